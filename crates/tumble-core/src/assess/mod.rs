@@ -1,0 +1,313 @@
+//! From an experiment to a judged result: every stage once, in order.
+
+mod error_level;
+mod influence;
+mod pool;
+mod result;
+mod verdict;
+
+pub use error_level::{ErrorLevel, RunErrorLevel, error_level};
+pub use influence::{Influence, InfluenceTest, influence};
+pub use pool::{Interval, PooledParameter, in_lsb, pool, scale_factor};
+pub use result::{BudgetLine, CompensationResult, compensation_result};
+pub use verdict::{Verdict, may_carry_result, verdict};
+
+use crate::estimate::{
+    Estimate, EstimateError, EstimateOptions, Residual, Setting, estimate,
+};
+use crate::judge::{self, Structure};
+use crate::nominal::{NominalScale, NominalScaleError, nominal_scale};
+use crate::{Experiment, Finding, FindingKind, GravitySource, Position, Run, STANDARD_GRAVITY_M_S2};
+
+/// Everything that is known about an experiment after it was judged.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Assessment {
+    /// `k0`.
+    pub nominal_scale: NominalScale,
+    /// Runs in the order of the experiment; with `[scale]` and no run, the up/down dwells stand as one.
+    pub runs: Vec<RunAssessment>,
+    /// Runs together, a parameter (and mounting) each.
+    pub pooled: Vec<PooledParameter>,
+    /// Curvature left over.
+    pub structure: Option<Structure>,
+    /// Temperature and signal level.
+    pub influence: Influence,
+    /// Before and after compensation.
+    pub error_level: Option<ErrorLevel>,
+    /// Uncertainty that does not show in the scatter.
+    pub budget: Vec<BudgetLine>,
+    /// Coefficients; present when the verdict allows.
+    pub compensation: Option<CompensationResult>,
+    /// Everything noteworthy, worst first.
+    pub findings: Vec<Finding>,
+    /// The verdict on the calibration.
+    pub verdict: Verdict,
+}
+
+/// One run after estimation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunAssessment {
+    /// Name of the run.
+    pub name: String,
+    /// Its mounting.
+    pub mounting: String,
+    /// Absent when nothing could be adjusted.
+    pub estimate: Option<Estimate>,
+    /// Mean readings of the positions that were used, LSB, in measured order.
+    pub mean_codes: Vec<f64>,
+    /// Mean temperatures of those positions.
+    pub temperatures_degc: Vec<Option<f64>>,
+    /// Standard deviation of single readings within dwells, pooled, LSB.
+    pub reading_std_lsb: Option<f64>,
+}
+
+impl RunAssessment {
+    /// Residuals of the run; empty when nothing could be adjusted.
+    #[must_use]
+    pub fn residuals(&self) -> &[Residual] {
+        self.estimate.as_ref().map_or(&[], |e| &e.residuals)
+    }
+}
+
+/// An experiment that could not be judged at all.
+#[derive(Debug, Clone, PartialEq)]
+pub enum AssessError {
+    /// Without `k0` there is no scale error.
+    NominalScale(NominalScaleError),
+    /// A run's adjustment failed.
+    Estimate {
+        /// Name of the run.
+        run: String,
+        /// Why.
+        source: EstimateError,
+    },
+}
+
+impl std::fmt::Display for AssessError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::NominalScale(e) => e.fmt(f),
+            Self::Estimate { run, source } => write!(f, "{run}: {source}"),
+        }
+    }
+}
+
+impl std::error::Error for AssessError {}
+
+/// Judges an experiment: estimates every run, puts the runs together, and says what may be believed.
+///
+/// **Errors** [`AssessError`] only where nothing can be judged (no nominal scale). Degenerate data are verdicts,
+/// not errors.
+///
+/// **Source** method sections 3–7, 9, 12.
+pub fn assess(experiment: &Experiment, options: &EstimateOptions) -> Result<Assessment, AssessError> {
+    let (k0, mut findings) = nominal_scale(experiment).map_err(AssessError::NominalScale)?;
+    let gravity = &experiment.bench.gravity;
+    findings.extend(gravity_findings(experiment));
+    findings.extend(judge::identical_runs(&experiment.runs));
+    findings.extend(pair_findings(experiment));
+
+    let setting = Setting {
+        bench: &experiment.bench,
+        quantizer: experiment.output.quantizer,
+        nominal_scale_m_s2_per_lsb: k0.value_m_s2_per_lsb,
+    };
+    let mut runs = Vec::new();
+    for (run, candidates) in adjusted_runs(experiment) {
+        runs.push(assess_run(experiment, &setting, options, &run, candidates, &mut findings));
+    }
+
+    let pooled = pool(&runs, gravity, options.level);
+    let contradicted = findings.iter().any(|f| f.kind.severity() == crate::Severity::Reject);
+    findings.extend(judge::reproducible(&experiment.runs, &pooled));
+    if !contradicted {
+        findings.extend(judge::determined_result(&pooled, &runs, &experiment.targets, options.level));
+    }
+    let structure = structure_findings(&runs, &mut findings);
+    let influence = influence(&runs, k0.value_m_s2_per_lsb, options.level);
+    findings.extend(influence.findings());
+    let error_level = error_level(&runs, &setting);
+    findings.extend(error_level.iter().filter_map(ErrorLevel::finding));
+    findings.push(budget_finding());
+
+    let verdict = verdict(&findings);
+    let budget = result::budget(&pooled, gravity);
+    let compensation = may_carry_result(&findings)
+        .then(|| compensation_result(&pooled, &runs, experiment.output.quantizer, k0.value_m_s2_per_lsb))
+        .flatten();
+    // Worst first; within a severity in the order of discovery.
+    findings.sort_by_key(|f| std::cmp::Reverse(f.kind.severity()));
+    Ok(Assessment {
+        nominal_scale: k0,
+        runs,
+        pooled,
+        structure,
+        influence,
+        error_level,
+        budget,
+        compensation,
+        findings,
+        verdict,
+    })
+}
+
+/// Runs with the positions of their adjustment: up/down dwells come first in the run that they belong to, and
+/// stand as a run of their own where there is no other.
+fn adjusted_runs(experiment: &Experiment) -> Vec<(Run, Vec<&Position>)> {
+    let pair = experiment.vertical.as_ref();
+    if experiment.runs.is_empty() {
+        return pair
+            .map(|p| {
+                let run = Run {
+                    name: "up/down".into(),
+                    mounting: "up/down".into(),
+                    positions: vec![p.up.clone(), p.down.clone()],
+                    date: None,
+                };
+                (run, vec![&p.up, &p.down])
+            })
+            .into_iter()
+            .collect();
+    }
+    experiment
+        .runs
+        .iter()
+        .map(|run| {
+            let own = pair.filter(|p| p.run.as_deref() == Some(run.name.as_str()));
+            let positions =
+                own.map(|p| [&p.up, &p.down]).into_iter().flatten().chain(&run.positions).collect();
+            (run.clone(), positions)
+        })
+        .collect()
+}
+
+fn assess_run(
+    experiment: &Experiment,
+    setting: &Setting<'_>,
+    options: &EstimateOptions,
+    run: &Run,
+    candidates: Vec<&Position>,
+    findings: &mut Vec<Finding>,
+) -> RunAssessment {
+    let bench = &experiment.bench;
+    let k0 = setting.nominal_scale_m_s2_per_lsb;
+    let g = bench.gravity.value_m_s2;
+    // The paper's adjustment uses [scale] for k0 alone.
+    let candidates = match options.method {
+        crate::estimate::Method::Paper if !experiment.runs.is_empty() => run.positions.iter().collect(),
+        _ => candidates,
+    };
+    let usable = judge::usable_positions(run, candidates, &experiment.output, bench, k0);
+    findings.extend(usable.findings);
+    let positions = usable.positions;
+    findings.extend(judge::noise(&run.name, &positions, &experiment.output));
+    let estimate = match estimate(&positions, setting, options) {
+        Ok(e) if !positions.is_empty() => Some(e),
+        Ok(_) => None,
+        Err(e) => {
+            findings.push(Finding {
+                kind: FindingKind::NotConverged,
+                place: run.name.clone(),
+                observed: e.to_string(),
+                limit: "a fixed point".into(),
+                remedy: "check the run's angles and codes; `--weights equal` shows what the data hold".into(),
+            });
+            None
+        }
+    };
+    if let Some(e) = &estimate {
+        findings.extend(judge::few_angles(&run.name, e));
+        findings.extend(judge::plausible(&run.name, e, options.method, g, options.level));
+        let stated = bench.angle_uncertainty.map(crate::Angle::arcmin);
+        findings.extend(judge::table(&run.name, e, stated, g / k0));
+        findings.extend(judge::determined_run(&run.name, e));
+        findings.extend(judge::settled(&run.name, e));
+    }
+    let variances: Vec<f64> =
+        positions.iter().filter_map(|p| p.readings.std()).map(|s| s * s).collect();
+    RunAssessment {
+        name: run.name.clone(),
+        mounting: run.mounting.clone(),
+        estimate,
+        mean_codes: positions.iter().filter_map(|p| p.readings.mean()).collect(),
+        temperatures_degc: positions.iter().map(|p| p.temperature_degc).collect(),
+        reading_std_lsb: crate::stats::mean(&variances).map(f64::sqrt),
+    }
+}
+
+/// Structure in each run alone and in all together; one finding, the most telling.
+fn structure_findings(runs: &[RunAssessment], findings: &mut Vec<Finding>) -> Option<Structure> {
+    let full: Vec<(&str, &Estimate)> = runs
+        .iter()
+        .filter_map(|r| r.estimate.as_ref().map(|e| (r.name.as_str(), e)))
+        .filter(|(_, e)| e.full().is_some() && e.covariance.is_some())
+        .collect();
+    if full.is_empty() {
+        return None;
+    }
+    let (together, found) = judge::structure(&full, 1);
+    if found.is_empty() && full.len() > 1 {
+        findings.extend(full.iter().flat_map(|one| judge::structure(&[*one], full.len()).1));
+    } else {
+        findings.extend(found);
+    }
+    Some(together)
+}
+
+fn gravity_findings(experiment: &Experiment) -> Vec<Finding> {
+    let gravity = &experiment.bench.gravity;
+    let mut findings = Vec::new();
+    if gravity.source == GravitySource::StatedWithoutUncertainty {
+        findings.push(Finding {
+            kind: FindingKind::GravityExact,
+            place: "[bench] gravity".into(),
+            observed: format!("{} m/s² without an uncertainty", gravity.value_m_s2),
+            limit: "a value with its standard uncertainty".into(),
+            remedy: "add gravity_uncertainty, or give latitude_deg and height_m; an error of g goes one to one into the scale factor".into(),
+        });
+    }
+    if gravity.value_m_s2 == STANDARD_GRAVITY_M_S2 {
+        findings.push(Finding {
+            kind: FindingKind::StandardGravity,
+            place: "[bench] gravity".into(),
+            observed: "9.80665 m/s²".into(),
+            limit: "the local value".into(),
+            remedy: "9.80665 m/s² is the unit gn; local gravity differs by up to 0.3 %: give latitude_deg and height_m".into(),
+        });
+    }
+    if experiment.bench.angle_uncertainty.is_none() {
+        findings.push(Finding {
+            kind: FindingKind::NoAngleUncertainty,
+            place: "[bench]".into(),
+            observed: "angle_uncertainty_arcmin is absent".into(),
+            limit: "the table's random setting error".into(),
+            remedy: "state angle_uncertainty_arcmin: it shapes the weights; without it the dwells' own scatter does".into(),
+        });
+    }
+    findings
+}
+
+fn pair_findings(experiment: &Experiment) -> Option<Finding> {
+    let pair = experiment.vertical.as_ref()?;
+    (pair.run.is_none() && !experiment.runs.is_empty()).then(|| Finding {
+        kind: FindingKind::PairForScaleOnly,
+        place: "[scale]".into(),
+        observed: "up and down belong to no run".into(),
+        limit: "run = \"…\"".into(),
+        remedy: "if they were taken in a run's power-up, name it: they tell bias and misalignment apart".into(),
+    })
+}
+
+/// Stated on every passport until the budget holds the dial's systematic errors.
+fn budget_finding() -> Finding {
+    Finding {
+        kind: FindingKind::BudgetIncomplete,
+        place: "budget".into(),
+        observed: "the uncertainty holds scatter, runs, gravity and the lean of upright dwells".into(),
+        limit: "also scale error and eccentricity of the dial, tilt of its axis, lean of the sensor".into(),
+        remedy: "3′ of eccentricity shifts the scale by 570 ppm at ±65° and hardly shows in the residuals: check the dial against a reference before relying on less".into(),
+    }
+}
+
+
+

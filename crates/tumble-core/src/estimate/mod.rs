@@ -1,0 +1,136 @@
+//! Estimation of one run: positions in, parameters with their covariance out.
+//!
+//! **Model** (method sections 2–6) `k* (N̂ + c(N̂)) = g sin(φ + Δφ) + Δa`, `k* = k0 (1 + δk)`.
+
+mod equations;
+mod exact;
+mod paper;
+mod sequential;
+mod types;
+
+pub use equations::{Equation, equations};
+pub use paper::WeightedRow;
+pub use sequential::{SequentialEstimate, Stabilization};
+pub use types::{Estimate, EstimateError, EstimateOptions, Method, Parameter, Residual, Weights};
+
+use crate::linalg::{RANK_CONDITION_LIMIT, Triangular};
+use crate::{Bench, Position, Quantizer};
+
+/// What every run of an experiment shares.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Setting<'a> {
+    /// The table and its gravity.
+    pub bench: &'a Bench,
+    /// The converter.
+    pub quantizer: Quantizer,
+    /// `k0`, m/s² per LSB.
+    pub nominal_scale_m_s2_per_lsb: f64,
+}
+
+/// Estimates bias, misalignment and scale error of one run.
+///
+/// Use it for one power-up in one mounting. It assumes that the parameters stay constant during the run and
+/// that the angles' systematic errors (dial zero apart, which goes into the misalignment) are small against
+/// the uncertainty wanted; the budget adds those.
+///
+/// **Model** [`Method::Exact`]: `N* = α + β sinφ + γ cosφ`, then `k* = g/√(β²+γ²)`, `Δφ = atan2(γ, β)`,
+/// `Δa = α k*`, `δk = k*/k0 − 1`. [`Method::Paper`]: `Δa + g cosφ Δφ − g sinφ δk = k0 N* − g sinφ`.
+///
+/// **Units** bias m/s² (what the unit reads too much), misalignment rad (true angle minus table angle), scale
+/// error relative (`k*/k0 − 1`).
+///
+/// **Uncertainty** statistical only: scatter of the positions around the model (n − p degrees of freedom) and
+/// the lean of ±90° dwells. Gravity, dial scale and eccentricity are not in.
+///
+/// **Errors** [`EstimateError`]. Too few angles are no error: what is identifiable is given, the rest is absent.
+///
+/// **Source** method sections 4, 6, 7.
+pub fn estimate(
+    positions: &[&Position],
+    setting: &Setting<'_>,
+    options: &EstimateOptions,
+) -> Result<Estimate, EstimateError> {
+    let identifiability = Identifiability::of(positions, setting);
+    let eqs = equations(positions, setting, options.weights);
+    let fit = match options.method {
+        Method::Paper => paper::fit(&eqs, setting, identifiability.columns),
+        Method::Exact => exact::fit(&eqs, setting, identifiability.columns)?,
+    };
+    let stabilization = if identifiability.full_rank() {
+        sequential::stabilization(&fit, options.level)
+    } else {
+        Stabilization::default()
+    };
+    Ok(Estimate {
+        positions: positions.len(),
+        distinct_angles: distinct_angles(positions),
+        degrees_of_freedom: fit.degrees_of_freedom,
+        values: core::array::from_fn(|i| identifiability.determined[i].then_some(fit.values[i])),
+        covariance: fit.covariance,
+        residuals: fit.residuals,
+        residual_std_lsb: fit.residual_std_lsb,
+        variance_ratio: fit.variance_ratio,
+        condition: identifiability.condition,
+        stabilization,
+        weighted_rows: fit.weighted_rows,
+    })
+}
+
+/// Number of different angles, to a millionth of a degree; up and down dwells count as angles.
+fn distinct_angles(positions: &[&Position]) -> usize {
+    let mut angles: Vec<f64> = positions.iter().map(|p| p.angle.deg()).collect();
+    angles.sort_by(f64::total_cmp);
+    angles.dedup_by(|a, b| (*a - *b).abs() < 1e-6);
+    angles.len()
+}
+
+/// Which parameters a set of positions determines at all.
+#[derive(Debug, Clone, PartialEq)]
+struct Identifiability {
+    /// Condition number of the columns (1, cosφ, −sinφ) with unit length.
+    condition: f64,
+    /// Whether a parameter alone is determined, in the order of the parameters.
+    determined: [bool; 3],
+    /// Columns that are fitted; dropped ones are combinations of these.
+    columns: [bool; 3],
+}
+
+impl Identifiability {
+    fn of(positions: &[&Position], setting: &Setting<'_>) -> Self {
+        let rows: Vec<[f64; 3]> = positions
+            .iter()
+            .map(|p| paper::design_row(p, setting.bench.gravity.value_m_s2))
+            .collect();
+        let triangle = |columns: [bool; 3]| {
+            let mut t = Triangular::new(columns.iter().filter(|c| **c).count());
+            rows.iter().for_each(|r| t.push(&select(r, columns), 0.0));
+            t
+        };
+        let all = triangle([true; 3]).scaled_singular_values();
+        let condition = all.condition();
+        if condition <= RANK_CONDITION_LIMIT {
+            return Self { condition, determined: [true; 3], columns: [true; 3] };
+        }
+        // A parameter is determined where no vector of the null space touches it.
+        let largest = all.values[0];
+        let null: Vec<usize> =
+            (0..3).filter(|j| all.values[*j] * RANK_CONDITION_LIMIT < largest).collect();
+        let determined =
+            core::array::from_fn(|i| null.iter().all(|j| all.right[(i, *j)].abs() < 1e-6));
+        // Drop misalignment first, then bias: what remains must have full rank.
+        let columns = [[true, false, true], [false, false, true], [true, false, false]]
+            .into_iter()
+            .find(|c| triangle(*c).condition() <= RANK_CONDITION_LIMIT)
+            .unwrap_or([false; 3]);
+        Self { condition, determined, columns }
+    }
+
+    fn full_rank(&self) -> bool {
+        self.columns == [true; 3]
+    }
+}
+
+/// The elements of a row whose columns are fitted.
+fn select(row: &[f64; 3], columns: [bool; 3]) -> Vec<f64> {
+    row.iter().zip(columns).filter(|(_, c)| *c).map(|(v, _)| *v).collect()
+}

@@ -1,0 +1,180 @@
+//! What goes into an estimation and what comes out.
+
+use super::{Stabilization, WeightedRow};
+use crate::linalg::Matrix;
+
+/// The estimator.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// Linear in the small unknowns, ordinary least squares (method section 4). The baseline.
+    Paper,
+    /// Exactly linear in three other unknowns (method section 6): right for any size of error.
+    Exact,
+}
+
+/// How positions weigh against each other. Their common size always comes from the residuals.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Weights {
+    /// All the same.
+    Equal,
+    /// `1/(σ² + ((g/k*) cos(φ+Δφ) σφ)²)`: angle errors count less where the table is steep.
+    Angle,
+}
+
+/// Options of [`super::estimate`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EstimateOptions {
+    /// Estimator.
+    pub method: Method,
+    /// Weights; [`Method::Paper`] is unweighted by definition and ignores them.
+    pub weights: Weights,
+    /// Level of confidence of intervals.
+    pub level: f64,
+}
+
+impl Default for EstimateOptions {
+    /// Exact, weighted by angle, 95 % (JCGM 100: the level for expanded uncertainties).
+    fn default() -> Self {
+        Self { method: Method::Exact, weights: Weights::Angle, level: 0.95 }
+    }
+}
+
+/// The parameters, in the order of every vector and matrix.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Parameter {
+    /// `Δa`, m/s² (K0 of IEEE 1293).
+    Bias,
+    /// `Δφ`, rad.
+    Misalignment,
+    /// `δk`, relative.
+    ScaleError,
+}
+
+impl Parameter {
+    /// In order.
+    pub const ALL: [Self; 3] = [Self::Bias, Self::Misalignment, Self::ScaleError];
+
+    /// Name in the passport.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Bias => "bias",
+            Self::Misalignment => "misalignment",
+            Self::ScaleError => "scale_error",
+        }
+    }
+
+    /// Name for people.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::ScaleError => "scale error",
+            _ => self.name(),
+        }
+    }
+
+    /// Unit.
+    #[must_use]
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Bias => "m/s2",
+            Self::Misalignment => "rad",
+            Self::ScaleError => "1",
+        }
+    }
+
+    /// Index in vectors and matrices.
+    #[must_use]
+    pub fn index(self) -> usize {
+        self as usize
+    }
+}
+
+/// One position's disagreement with the model.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Residual {
+    /// Index of the position among those that were used.
+    pub position: usize,
+    /// Table angle, degrees.
+    pub angle_deg: f64,
+    /// Measured minus modelled, LSB.
+    pub lsb: f64,
+    /// Measured minus modelled over the standard deviation that the fit gives it; absent without redundancy.
+    pub standardized: Option<f64>,
+}
+
+/// The result of one run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Estimate {
+    /// Positions that were used.
+    pub positions: usize,
+    /// Different angles among them.
+    pub distinct_angles: usize,
+    /// `n − p`.
+    pub degrees_of_freedom: usize,
+    /// In the order of [`Parameter::ALL`]; absent where the positions do not determine it.
+    pub values: [Option<f64>; 3],
+    /// Covariance in the same order and units; absent without full rank or without redundancy.
+    pub covariance: Option<Matrix>,
+    /// Measured minus modelled, in measured order.
+    pub residuals: Vec<Residual>,
+    /// `√(Σr²/(n−p))`, LSB; absent without redundancy.
+    pub residual_std_lsb: Option<f64>,
+    /// Observed over expected variance of the positions, where an angle uncertainty was stated and used.
+    pub variance_ratio: Option<f64>,
+    /// Condition number with unit columns; infinite where a column is missing.
+    pub condition: f64,
+    /// How the estimate settled as positions were added.
+    pub stabilization: Stabilization,
+    /// The equations of the adjustment, over their standard deviations; for tests of further terms.
+    pub weighted_rows: Vec<WeightedRow>,
+}
+
+impl Estimate {
+    /// All three values; `None` below full rank.
+    #[must_use]
+    pub fn full(&self) -> Option<[f64; 3]> {
+        match self.values {
+            [Some(b), Some(m), Some(s)] => Some([b, m, s]),
+            _ => None,
+        }
+    }
+
+    /// Standard uncertainty of a parameter.
+    #[must_use]
+    pub fn standard_uncertainty(&self, parameter: Parameter) -> Option<f64> {
+        let i = parameter.index();
+        self.covariance.as_ref().map(|c| c[(i, i)].sqrt())
+    }
+
+    /// Correlation of two parameters.
+    #[must_use]
+    pub fn correlation(&self, a: Parameter, b: Parameter) -> Option<f64> {
+        self.covariance.as_ref().and_then(|c| c.correlation(a.index(), b.index()))
+    }
+}
+
+/// An estimation that could not be done.
+#[derive(Debug, Clone, PartialEq)]
+pub enum EstimateError {
+    /// Weights and solution found no common fixed point.
+    NotConverged {
+        /// Iterations done.
+        iterations: usize,
+        /// Relative change in the last one.
+        last_change: f64,
+    },
+}
+
+impl std::fmt::Display for EstimateError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::NotConverged { iterations, last_change } => write!(
+                f,
+                "the adjustment still changed by {last_change:.1e} after {iterations} iterations"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for EstimateError {}

@@ -1,0 +1,169 @@
+//! Findings: done, but know this.
+
+/// What a finding does to the verdict.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// Worth knowing.
+    Note,
+    /// The result stands, with a reservation.
+    Warning,
+    /// Something is missing: the calibration cannot be judged yet.
+    Missing,
+    /// The data contradict the model: no coefficients.
+    Reject,
+}
+
+/// One thing worth knowing about an experiment.
+///
+/// Nothing is printed and then lost: every finding stands in the passport and every renderer shows it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Finding {
+    /// What kind it is: stable id, title, severity.
+    pub kind: FindingKind,
+    /// Where: a run, a dwell, a parameter; empty for the whole experiment.
+    pub place: String,
+    /// What was observed, with unit.
+    pub observed: String,
+    /// What it was held against, with unit.
+    pub limit: String,
+    /// What to do about it.
+    pub remedy: String,
+}
+
+impl Finding {
+    /// Stable id, severity and title in one line, for people.
+    #[must_use]
+    pub fn headline(&self) -> String {
+        let place = if self.place.is_empty() { String::new() } else { format!(" ({})", self.place) };
+        format!("{}{place}", self.kind.title())
+    }
+}
+
+macro_rules! finding_kinds {
+    ($($(#[doc = $doc:literal])* $name:ident = $id:literal, $severity:ident, $title:literal;)*) => {
+        /// Every kind of finding, with its stable id. Ids are never reused.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        pub enum FindingKind {
+            $($(#[doc = $doc])* $name,)*
+        }
+
+        impl FindingKind {
+            /// All kinds, in the order of their ids.
+            pub const ALL: &'static [Self] = &[$(Self::$name,)*];
+
+            /// The stable id.
+            #[must_use]
+            pub const fn id(self) -> &'static str {
+                match self { $(Self::$name => $id,)* }
+            }
+
+            /// What it does to the verdict.
+            #[must_use]
+            pub const fn severity(self) -> Severity {
+                match self { $(Self::$name => Severity::$severity,)* }
+            }
+
+            /// In a few words.
+            #[must_use]
+            pub const fn title(self) -> &'static str {
+                match self { $(Self::$name => $title,)* }
+            }
+        }
+    };
+}
+
+finding_kinds! {
+    /// The run was measured against the sign of the axis.
+    SignReversed = "T0101", Reject, "the run is measured backwards in sign";
+    /// The scale found is about 9.8 times the nominal one, or a tenth of it.
+    UnitsMixedUp = "T0102", Reject, "units mixed up: the scale is off by about g";
+    /// The scale found has nothing to do with the nominal one.
+    ScaleImplausible = "T0103", Reject, "the scale factor found is not this sensor's";
+    /// A bias beyond 1 g.
+    BiasImpossible = "T0104", Reject, "the bias is physically impossible";
+    /// A misalignment no seat can have.
+    MisalignmentImpossible = "T0105", Reject, "the misalignment is no mounting error";
+    /// Unusual, not impossible.
+    Unusual = "T0106", Warning, "an unusual value for an accelerometer";
+    /// The code stays while the angle moves.
+    StuckConverter = "T0107", Reject, "the converter is stuck";
+    /// All dwells stand at the converter's end.
+    SaturatedThroughout = "T0108", Reject, "saturated throughout";
+    /// Some dwells touch the converter's end.
+    SaturatedDwell = "T0109", Warning, "a dwell touches the converter's end";
+    /// The positions scatter far beyond any table.
+    ScatterHopeless = "T0110", Reject, "the readings do not follow the angles";
+    /// Left-over structure: quadratic.
+    QuadraticResidual = "T0111", Reject, "a quadratic is left over in the residuals";
+    /// Left-over structure: cubic.
+    CubicResidual = "T0112", Reject, "a cubic is left over in the residuals";
+    /// Left-over structure, real but small.
+    SmallStructure = "T0113", Warning, "a small curvature is left over in the residuals";
+    /// The runs are copies of one another.
+    RunsIdentical = "T0115", Reject, "two runs are copies of one another";
+    /// The estimate still moved at the end of the run.
+    NotSettled = "T0116", Warning, "the estimate did not settle";
+    /// The iteration found no fixed point.
+    NotConverged = "T0117", Reject, "the adjustment did not converge";
+    /// Too few distinct angles for the parameters.
+    RankDeficient = "T0201", Missing, "the positions do not determine all parameters";
+    /// As many distinct angles as parameters, no repeats.
+    NoRedundancy = "T0202", Missing, "no redundancy: uncertainty cannot be estimated";
+    /// As many distinct angles as parameters, with repeats.
+    NoLackOfFitTest = "T0203", Warning, "no lack-of-fit test is possible";
+    /// The expanded uncertainty exceeds its target.
+    Undetermined = "T0204", Missing, "a parameter is undetermined";
+    /// Strongly correlated, still usable.
+    IllConditioned = "T0205", Warning, "two parameters are hard to tell apart";
+    /// One run only.
+    OneRun = "T0206", Missing, "one run: reproducibility is not shown";
+    /// No runs at all.
+    NoRuns = "T0207", Missing, "there is no run on the table";
+    /// The intervals of the runs have no point in common.
+    EmptyIntersection = "T0208", Warning, "the runs' intervals have no point in common";
+    /// Two runs: intervals are wide.
+    FewRuns = "T0209", Note, "few runs: the intervals are wide";
+    /// Every run reaches the target, the pooled value does not.
+    RunsTooFew = "T0210", Missing, "more runs are needed";
+    /// Table better or worse than stated.
+    TableWorse = "T0301", Warning, "the positions scatter more than the stated angle uncertainty";
+    /// Table better than stated.
+    TableBetter = "T0302", Note, "the positions scatter less than the stated angle uncertainty";
+    /// Sign rule near zero.
+    NearCodeZero = "T0303", Note, "dwells near code zero of a truncating converter";
+    /// One code in a whole dwell.
+    OneCodeDwell = "T0304", Note, "dwells that show a single code";
+    /// Noise below the dither limit.
+    LittleDither = "T0305", Warning, "too little noise to dither the converter";
+    /// Gravity without uncertainty.
+    GravityExact = "T0306", Note, "gravity is taken as exact";
+    /// Standard gravity used as local gravity.
+    StandardGravity = "T0307", Warning, "standard gravity is a unit, not the local gravity";
+    /// Up/down pair not tied to a run.
+    PairForScaleOnly = "T0308", Note, "the up/down dwells give the nominal scale only";
+    /// Up/down scale disagrees with the stated one.
+    NominalScaleDisagrees = "T0309", Warning, "the stated nominal scale disagrees with the up/down dwells";
+    /// Temperature has an effect.
+    TemperatureEffect = "T0310", Warning, "temperature has an effect";
+    /// Signal level has an effect.
+    SignalLevelEffect = "T0311", Warning, "the error depends on the signal level";
+    /// The budget is not complete.
+    BudgetIncomplete = "T0312", Note, "systematic errors of the table are not in the uncertainty";
+    /// No angle uncertainty stated.
+    NoAngleUncertainty = "T0313", Note, "no angle uncertainty is stated";
+    /// Columns that were not used.
+    IgnoredColumns = "T0314", Note, "columns that were not used";
+    /// Compensation does not help on held-out runs.
+    CompensationWorse = "T0315", Warning, "compensation does not reduce the error on other runs";
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ids_are_unique_and_ascending() {
+        let ids: Vec<_> = FindingKind::ALL.iter().map(|k| k.id()).collect();
+        assert!(ids.windows(2).all(|w| w[0] < w[1]), "{ids:?}");
+    }
+}

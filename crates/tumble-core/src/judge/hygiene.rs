@@ -1,0 +1,116 @@
+//! Data hygiene before any estimation: saturated dwells, a stuck converter, copies.
+
+use crate::{Bench, Code, Finding, FindingKind, Output, Position, Run};
+
+/// Movement of the angle, in LSB's worth, during which a converter must not keep its code.
+const STUCK_LIMIT_LSB: f64 = 2.0;
+
+/// Positions that can be averaged, and what was noticed while choosing them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Usable<'a> {
+    /// In measured order.
+    pub positions: Vec<&'a Position>,
+    /// What was noticed.
+    pub findings: Vec<Finding>,
+}
+
+/// Leaves out dwells that touch the converter's ends and looks for a converter that sticks.
+#[must_use]
+pub fn usable_positions<'a>(
+    run: &Run,
+    candidates: Vec<&'a Position>,
+    output: &Output,
+    bench: &Bench,
+    nominal_scale_m_s2_per_lsb: f64,
+) -> Usable<'a> {
+    let mut findings = Vec::new();
+    let total = candidates.len();
+    let (positions, censored): (Vec<_>, Vec<_>) =
+        candidates.into_iter().partition(|p| p.readings.censored(&output.ends) == 0);
+    let ends = format!(
+        "codes strictly inside {} … {}",
+        end_text(output.ends.min_code),
+        end_text(output.ends.max_code)
+    );
+    if positions.is_empty() && total > 0 {
+        findings.push(Finding {
+            kind: FindingKind::SaturatedThroughout,
+            place: run.name.clone(),
+            observed: format!("all {total} dwells at the converter's end"),
+            limit: ends,
+            remedy: "lower the gain or choose a range of the sensor that covers ±1 g, and measure again".into(),
+        });
+    } else if let Some(first) = censored.first() {
+        findings.push(Finding {
+            kind: FindingKind::SaturatedDwell,
+            place: first.place.clone(),
+            observed: format!("{} of {total} dwells hold codes at the converter's end; left out", censored.len()),
+            limit: ends,
+            remedy: "keep the angles inside the converter's range, or lower the gain".into(),
+        });
+    }
+    let full_scale = bench.gravity.value_m_s2 / nominal_scale_m_s2_per_lsb;
+    if let Some(finding) = stuck(run, &positions, full_scale) {
+        findings.push(finding);
+    }
+    Usable { positions, findings }
+}
+
+fn end_text(end: Option<Code>) -> String {
+    end.map_or_else(|| "(not stated)".into(), |c| c.0.to_string())
+}
+
+/// A code (or an exact mean) that stays while the angle moved by more than two LSB's worth.
+fn stuck(run: &Run, positions: &[&Position], full_scale_lsb: f64) -> Option<Finding> {
+    let level = |p: &Position| p.seat.vertical_sign().unwrap_or_else(|| p.angle.sin());
+    let same = |a: &Position, b: &Position| match (a.readings.only_code(), b.readings.only_code()) {
+        (Some(x), Some(y)) => x == y,
+        // Real noise never repeats a mean and a scatter of many samples to the last digit.
+        _ => {
+            a.readings.samples() > 1
+                && a.readings.mean() == b.readings.mean()
+                && a.readings.std() == b.readings.std()
+        }
+    };
+    let moved = |a: &Position, b: &Position| ((level(a) - level(b)) * full_scale_lsb).abs();
+    let mut stuck_pairs =
+        positions.windows(2).filter(|w| same(w[0], w[1]) && moved(w[0], w[1]) > STUCK_LIMIT_LSB);
+    let first = stuck_pairs.next()?;
+    let more = stuck_pairs.count();
+    Some(Finding {
+        kind: FindingKind::StuckConverter,
+        place: first[1].place.clone(),
+        observed: format!(
+            "the reading stays at {} while the angle moves by {:.1} LSB's worth (seen {} times in {})",
+            first[0].readings.mean().unwrap_or_default(),
+            moved(first[0], first[1]),
+            more + 1,
+            run.name
+        ),
+        limit: format!("{STUCK_LIMIT_LSB} LSB's worth"),
+        remedy: "check that the logger reads fresh samples and that the converter runs; measure again".into(),
+    })
+}
+
+/// Runs whose readings are equal to the last digit.
+#[must_use]
+pub fn identical_runs(runs: &[Run]) -> Vec<Finding> {
+    let same = |a: &Run, b: &Run| {
+        !a.positions.is_empty()
+            && a.positions.len() == b.positions.len()
+            && a.positions.iter().zip(&b.positions).all(|(p, q)| p.angle == q.angle && p.readings == q.readings)
+    };
+    let mut findings = Vec::new();
+    for (i, a) in runs.iter().enumerate() {
+        if let Some(b) = runs[i + 1..].iter().find(|b| same(a, b)) {
+            findings.push(Finding {
+                kind: FindingKind::RunsIdentical,
+                place: format!("{} and {}", a.name, b.name),
+                observed: "every reading of both runs is the same".into(),
+                limit: "runs of their own power-ups".into(),
+                remedy: "remove the copy from experiment.toml, or measure the run again".into(),
+            });
+        }
+    }
+    findings
+}

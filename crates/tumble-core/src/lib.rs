@@ -1,0 +1,38 @@
+//! The science of Tumble: calibration of accelerometers against gravity.
+//!
+//! The way of the data: codes → [`CodeHistogram`] (a dwell) → [`Position`] → [`Run`] → [`Experiment`] →
+//! [`estimate::Estimate`] (a run) → [`assess::Assessment`] (findings, verdict, result).
+//!
+//! No I/O, no clock, no environment, no entropy: time, operator and seeds come in as arguments.
+
+pub mod assess;
+mod blocks;
+mod compensator;
+pub mod estimate;
+mod experiment;
+mod finding;
+mod gravity;
+mod histogram;
+pub mod judge;
+pub mod linalg;
+mod nominal;
+mod quantizer;
+mod readings;
+pub mod simulate;
+pub mod stats;
+pub mod term;
+mod units;
+
+pub use blocks::BlockSums;
+pub use compensator::{Compensated, Compensator};
+pub use experiment::{
+    Bench, DEFAULT_VERTICAL_LEAN_ARCMIN, Experiment, Output, Position, Run, Seat, Sensor, Targets,
+    VerticalPair,
+};
+pub use finding::{Finding, FindingKind, Severity};
+pub use gravity::{Gravity, GravitySource};
+pub use histogram::CodeHistogram;
+pub use nominal::{NominalScale, NominalScaleError, NominalScaleSource, nominal_scale, nominal_scale_from_means};
+pub use quantizer::{Compensation, ConverterEnds, Quantizer, QuantizerOffset};
+pub use readings::{Readings, ValueMoments, ValueOutOfRange};
+pub use units::{ARCMIN_RAD, Angle, Code, STANDARD_GRAVITY_M_S2};

@@ -1,0 +1,10 @@
+//! Small dense linear algebra for least squares with few columns: orthogonal transformations only, so that
+//! narrow arcs (condition numbers of 1e5 and more) lose no more digits than they must.
+
+mod jacobi;
+mod matrix;
+mod triangular;
+
+pub use jacobi::{SingularValues, singular_values};
+pub use matrix::Matrix;
+pub use triangular::{RANK_CONDITION_LIMIT, RankDeficient, Triangular};

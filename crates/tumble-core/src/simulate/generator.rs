@@ -1,0 +1,217 @@
+//! From a truth to codes.
+
+use rand_core::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64;
+
+use super::Truth;
+use crate::{
+    Bench, BlockSums, Code, CodeHistogram, Experiment, Gravity, GravitySource, Output, Position,
+    Quantizer, Readings, Run, Sensor, Targets, ValueMoments,
+};
+
+/// One simulated dwell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SimulatedPosition {
+    /// Table angle as an operator would write it, degrees.
+    pub angle_deg: f64,
+    /// Analogue samples, LSB, in time order; what the converter makes of them is [`Truth::code`].
+    pub analogue_lsb: Vec<f64>,
+    /// Temperature during the dwell, where it is recorded.
+    pub temperature_degc: Option<f64>,
+}
+
+/// One simulated run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SimulatedRun {
+    /// Dwells in order; upright ones first, when taken.
+    pub positions: Vec<SimulatedPosition>,
+    /// Bias of this power-up, m/s².
+    pub bias_m_s2: f64,
+}
+
+impl Truth {
+    /// What the converter makes of an analogue value: rounded, and held at its ends.
+    #[must_use]
+    pub fn code(&self, analogue_lsb: f64) -> Option<Code> {
+        let code = self.quantizer.code(analogue_lsb.clamp(f64::from(i32::MIN), f64::from(i32::MAX)))?;
+        let code = self.ends.min_code.map_or(code, |m| code.max(m));
+        Some(self.ends.max_code.map_or(code, |m| code.min(m)))
+    }
+
+    /// True angle of the sensitive axis (rad) for a dial angle, before its random part.
+    fn true_angle_rad(&self, dial_rad: f64) -> f64 {
+        dial_rad * (1.0 + self.dial_scale)
+            + self.dial_zero.rad()
+            + self.eccentricity.rad() * (dial_rad + self.eccentricity_phase.rad()).sin()
+            + self.misalignment.rad()
+    }
+
+    /// Noiseless analogue value, LSB, for an acceleration along the axis and a bias.
+    fn analogue_lsb(&self, a: f64, bias_m_s2: f64) -> f64 {
+        let nonlinear = a + self.k2_per_m_s2 * a * a + self.k3_per_m2_s4 * a * a * a;
+        (nonlinear + bias_m_s2) / self.actual_scale_m_s2_per_lsb()
+    }
+}
+
+/// Random numbers of one run: runs have streams of their own, so each can be made alone.
+fn stream(truth: &Truth, run: u32) -> Pcg64 {
+    let mut seed = [0u8; 32];
+    seed[..8].copy_from_slice(&truth.seed.to_le_bytes());
+    seed[16..20].copy_from_slice(&(run + 1).to_le_bytes());
+    Pcg64::from_seed(seed)
+}
+
+/// Bias of one power-up (counted from zero), m/s².
+#[must_use]
+pub fn run_bias_m_s2(truth: &Truth, run: u32) -> f64 {
+    let turn_on: f64 = StandardNormal.sample(&mut stream(truth, run));
+    truth.bias_m_s2 + truth.turn_on_m_s2 * turn_on
+}
+
+/// Simulates one run (counted from zero).
+#[must_use]
+pub fn simulate_run(truth: &Truth, run: u32) -> SimulatedRun {
+    let mut rng = stream(truth, run);
+    let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
+    let bias_m_s2 = truth.bias_m_s2 + truth.turn_on_m_s2 * normal();
+    let mut dials: Vec<(f64, bool)> = truth.angles_deg.iter().map(|a| (*a, false)).collect();
+    if truth.upright_in_each_run {
+        dials.splice(0..0, [(90.0, true), (-90.0, true)]);
+    }
+    let samples = truth.samples_per_dwell();
+    let per_sample_walk = truth.random_walk_m_s2_rts / truth.rate_hz.sqrt();
+    let k = truth.actual_scale_m_s2_per_lsb();
+    let middle = truth.temperature_degc.map_or(0.0, |(a, b)| 0.5 * (a + b));
+    let steps = dials.len().saturating_sub(1).max(1) as f64;
+    let mut walk = 0.0;
+    let mut positions = Vec::with_capacity(dials.len());
+    for (i, (angle_deg, upright)) in dials.iter().enumerate() {
+        let dial = angle_deg.to_radians();
+        let true_angle = if *upright {
+            // A lean to either side costs the same: the cosine is even.
+            dial + truth.vertical_lean.rad() * normal()
+        } else {
+            truth.true_angle_rad(dial) + truth.setting_scatter.rad() * normal()
+        };
+        let temperature_degc =
+            truth.temperature_degc.map(|(from, to)| from + (to - from) * i as f64 / steps);
+        let thermal = temperature_degc.map_or(0.0, |t| truth.bias_per_k_m_s2 * (t - middle));
+        let level = truth.analogue_lsb(truth.gravity_m_s2 * true_angle.sin(), bias_m_s2 + thermal);
+        let analogue_lsb = (0..samples)
+            .map(|_| {
+                if per_sample_walk > 0.0 {
+                    walk += per_sample_walk * normal();
+                }
+                level + (walk + truth.noise_m_s2 * normal()) / k
+            })
+            .collect();
+        positions.push(SimulatedPosition { angle_deg: *angle_deg, analogue_lsb, temperature_degc });
+    }
+    SimulatedRun { positions, bias_m_s2 }
+}
+
+/// Simulates a pair of dwells with the axis up and down, in a power-up of their own.
+#[must_use]
+pub fn simulate_vertical(truth: &Truth) -> SimulatedRun {
+    let alone =
+        Truth { angles_deg: Vec::new(), upright_in_each_run: true, ..truth.clone() };
+    simulate_run(&alone, u32::MAX - 1)
+}
+
+/// Simulates an experiment without going through files, for statistics.
+#[must_use]
+pub fn experiment(truth: &Truth) -> Experiment {
+    let bench = Bench {
+        gravity: Gravity {
+            value_m_s2: truth.gravity_m_s2,
+            standard_uncertainty_m_s2: 0.0,
+            source: GravitySource::Stated,
+        },
+        angle_uncertainty: Some(truth.setting_scatter).filter(|s| s.rad() > 0.0),
+        range: None,
+        vertical_lean: truth.vertical_lean,
+    };
+    let runs = (0..truth.runs)
+        .map(|r| Run {
+            name: format!("run-{}", r + 1),
+            mounting: "A".into(),
+            positions: simulate_run(truth, r)
+                .positions
+                .iter()
+                .map(|p| position(truth, &bench, p))
+                .collect(),
+            date: None,
+        })
+        .collect();
+    Experiment {
+        sensor: Sensor { model: "simulated".into(), serial: "0".into(), axis: "X".into() },
+        output: Output {
+            quantizer: truth.quantizer,
+            unit: "LSB".into(),
+            nominal_scale_m_s2_per_lsb: Some(truth.nominal_scale_m_s2_per_lsb),
+            rate_hz: Some(truth.rate_hz),
+            ends: truth.ends,
+        },
+        bench,
+        vertical: None,
+        runs,
+        targets: Targets::default(),
+    }
+}
+
+/// What the converter records of a dwell.
+#[must_use]
+pub fn readings(truth: &Truth, p: &SimulatedPosition) -> Readings {
+    let mut blocks = BlockSums::default();
+    if truth.quantizer == Quantizer::None {
+        let mut moments = ValueMoments::default();
+        for steps in p.analogue_lsb.iter().filter_map(|x| ValueMoments::steps(*x).ok()) {
+            moments.record(steps);
+            blocks.record(steps);
+        }
+        Readings::Values { moments, blocks }
+    } else {
+        let mut histogram = CodeHistogram::default();
+        for code in p.analogue_lsb.iter().filter_map(|x| truth.code(*x)) {
+            histogram.record(code);
+            blocks.record(i128::from(code.0));
+        }
+        Readings::Codes { histogram, blocks }
+    }
+}
+
+fn position(truth: &Truth, bench: &Bench, p: &SimulatedPosition) -> Position {
+    let angle = crate::Angle::from_deg(p.angle_deg);
+    Position {
+        angle,
+        seat: bench.seat(angle),
+        readings: readings(truth, p),
+        temperature_degc: p.temperature_degc,
+        place: format!("{}°", p.angle_deg),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Preset;
+    use super::*;
+
+    #[test]
+    fn the_same_seed_gives_the_same_codes_and_another_seed_others() {
+        let truth = Truth { dwell_s: 0.2, ..Preset::Paper3.truth() };
+        assert_eq!(experiment(&truth), experiment(&truth));
+        let other = Truth { seed: 2, ..truth.clone() };
+        assert_ne!(experiment(&truth), experiment(&other));
+        // Runs have streams of their own.
+        assert_ne!(simulate_run(&truth, 0).positions, simulate_run(&truth, 1).positions);
+    }
+
+    #[test]
+    fn the_converter_holds_at_its_ends() {
+        let mut truth = Preset::Paper1.truth();
+        truth.ends.max_code = Some(Code(100));
+        assert_eq!(truth.code(1e9), Some(Code(100)));
+        assert_eq!(truth.code(-3.7), Some(Code(-3)));
+    }
+}

@@ -1,0 +1,56 @@
+//! The one pipeline: read, judge, make the passport.
+
+use std::path::Path;
+
+use tumble_core::assess::{AssessError, assess};
+use tumble_core::estimate::EstimateOptions;
+
+use crate::error::ReadError;
+use crate::folder::read_experiment;
+use crate::passport::{self, Passport};
+
+/// Options of [`certify`].
+#[derive(Debug, Clone, Default)]
+pub struct CertifyOptions {
+    /// Estimation.
+    pub estimate: EstimateOptions,
+    /// Number of the certificate; else the folder's.
+    pub id: Option<String>,
+    /// Day of issue; else the folder's.
+    pub issued: Option<String>,
+}
+
+/// An experiment that could not be certified: nothing was judged.
+#[derive(Debug)]
+pub enum CertifyError {
+    /// Could not be read.
+    Read(ReadError),
+    /// Could not be judged.
+    Assess(AssessError),
+}
+
+impl std::fmt::Display for CertifyError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Read(e) => e.fmt(f),
+            Self::Assess(e) => e.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for CertifyError {}
+
+/// Reads an experiment folder, judges it and makes its passport. Rejected and indeterminate experiments get a
+/// passport too; it says why.
+pub fn certify(folder: &Path, options: &CertifyOptions) -> Result<Passport, CertifyError> {
+    let read = read_experiment(folder).map_err(CertifyError::Read)?;
+    let mut assessment = assess(&read.experiment, &options.estimate).map_err(CertifyError::Assess)?;
+    assessment.findings.extend(read.findings.iter().cloned());
+    Ok(passport::build(
+        &read,
+        &assessment,
+        &options.estimate,
+        options.id.as_deref(),
+        options.issued.as_deref(),
+    ))
+}

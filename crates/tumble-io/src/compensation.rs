@@ -1,0 +1,112 @@
+//! From a passport to coefficients at work.
+
+use tumble_core::{Code, Compensation, Compensator, ConverterEnds, Quantizer, QuantizerOffset};
+
+use crate::passport::Passport;
+
+/// Whether coefficients may be used before reproducibility is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Proof {
+    /// Only accepted passports.
+    Required,
+    /// Also passports that are indeterminate for want of runs.
+    Waived,
+}
+
+/// A passport that gives no coefficients.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum CompensationRefused {
+    /// The calibration was rejected.
+    Rejected {
+        /// Why.
+        reasons: Vec<String>,
+    },
+    /// The calibration is indeterminate, and not for want of runs alone.
+    Indeterminate {
+        /// What is missing.
+        missing: Vec<String>,
+    },
+    /// Reproducibility is not shown; `--unproven` uses the coefficients all the same.
+    Unproven,
+    /// A word that this version does not know.
+    Unknown {
+        /// The field.
+        field: &'static str,
+        /// The word.
+        seen: String,
+    },
+}
+
+impl std::fmt::Display for CompensationRefused {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let first = |list: &[String]| list.first().map(|s| crate::error::visible(s)).unwrap_or_default();
+        match self {
+            Self::Rejected { reasons } => {
+                write!(f, "the calibration was rejected and has no coefficients: {}", first(reasons))
+            }
+            Self::Indeterminate { missing } => {
+                write!(f, "the calibration is indeterminate and has no coefficients: {}", first(missing))
+            }
+            Self::Unproven => write!(
+                f,
+                "reproducibility is not shown (too few runs): the bias may differ after the next power-up; \
+                 measure more runs, or accept that with --unproven"
+            ),
+            Self::Unknown { field, seen } => write!(
+                f,
+                "{field} `{}` is not known to this version; use the version of tumble that wrote the passport",
+                crate::error::visible(seen)
+            ),
+        }
+    }
+}
+
+impl std::error::Error for CompensationRefused {}
+
+/// Coefficients of a passport.
+///
+/// **Errors** [`CompensationRefused`] where the verdict does not allow it.
+pub fn compensator(passport: &Passport, proof: Proof) -> Result<Compensator, CompensationRefused> {
+    let unknown = |field, seen: &str| CompensationRefused::Unknown { field, seen: seen.to_owned() };
+    let c = match (passport.verdict.as_str(), &passport.compensation) {
+        ("accepted", Some(c)) => c,
+        ("indeterminate", Some(c)) if proof == Proof::Waived => c,
+        ("indeterminate", Some(_)) => return Err(CompensationRefused::Unproven),
+        ("indeterminate", None) => {
+            return Err(CompensationRefused::Indeterminate { missing: passport.missing.clone() });
+        }
+        ("rejected", _) => {
+            return Err(CompensationRefused::Rejected { reasons: passport.reasons.clone() });
+        }
+        ("accepted", None) => return Err(unknown("compensation", "absent")),
+        (other, _) => return Err(unknown("verdict", other)),
+    };
+    let quantizer_offset = match c.quantizer_offset.as_str() {
+        "half_sign" => QuantizerOffset::HalfSign,
+        "half" => QuantizerOffset::Half,
+        "none" => QuantizerOffset::None,
+        other => return Err(unknown("quantizer_offset", other)),
+    };
+    let quantizer = match passport.output.quantizer.as_str() {
+        "truncate" => Quantizer::Truncate,
+        "floor" => Quantizer::Floor,
+        "round" => Quantizer::Round,
+        "none" => Quantizer::None,
+        other => return Err(unknown("quantizer", other)),
+    };
+    Ok(Compensator {
+        coefficients: Compensation {
+            scale_factor_m_s2_per_lsb: c.scale_factor,
+            bias_m_s2: c.bias,
+            quantizer_offset,
+            covariance: c.covariance,
+        },
+        quantizer,
+        ends: ConverterEnds {
+            min_code: passport.output.min_code.map(Code),
+            max_code: passport.output.max_code.map(Code),
+        },
+        valid_range_lsb: (c.valid_range_lsb[0], c.valid_range_lsb[1]),
+        reading_std_lsb: c.reading_std_lsb,
+    })
+}

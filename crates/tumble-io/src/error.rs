@@ -1,0 +1,259 @@
+//! Input that cannot be read: what, where, and one thing to do about it.
+
+use std::fmt;
+use std::path::PathBuf;
+
+/// A place in an input.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Place {
+    /// File, as the user named it.
+    pub file: String,
+    /// Line, counted from one.
+    pub line: Option<u64>,
+    /// Column: a field's name, or a character's number in a text file.
+    pub column: Option<String>,
+}
+
+impl Place {
+    /// A whole file.
+    #[must_use]
+    pub fn file(file: impl Into<String>) -> Self {
+        Self { file: file.into(), ..Self::default() }
+    }
+    /// A line of a file.
+    #[must_use]
+    pub fn line(file: impl Into<String>, line: u64) -> Self {
+        Self { file: file.into(), line: Some(line), column: None }
+    }
+    /// A field in a line.
+    #[must_use]
+    pub fn field(file: impl Into<String>, line: u64, column: impl Into<String>) -> Self {
+        Self { file: file.into(), line: Some(line), column: Some(column.into()) }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&visible(&self.file))?;
+        if let Some(line) = self.line {
+            write!(f, ", line {line}")?;
+        }
+        if let Some(column) = &self.column {
+            write!(f, ", column {}", visible(column))?;
+        }
+        Ok(())
+    }
+}
+
+/// Text from outside, safe to print on a terminal: control characters become visible, long text is cut.
+pub(crate) fn visible(text: &str) -> String {
+    const LONGEST: usize = 80;
+    let mut out: String = text
+        .chars()
+        .take(LONGEST)
+        .map(|c| if c.is_control() { '\u{fffd}' } else { c })
+        .collect();
+    if text.chars().nth(LONGEST).is_some() {
+        out.push('…');
+    }
+    out
+}
+
+/// Input that cannot be read; nothing was judged.
+#[derive(Debug)]
+pub struct ReadError {
+    /// Where.
+    pub place: Place,
+    /// What.
+    pub problem: Problem,
+}
+
+/// What is wrong with an input.
+#[derive(Debug)]
+pub enum Problem {
+    /// The operating system refused.
+    Io(std::io::Error),
+    /// Not an experiment folder.
+    NoExperiment {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// TOML that does not parse, or a value of the wrong type.
+    Toml {
+        /// What the parser says.
+        message: String,
+    },
+    /// A key that is not known.
+    UnknownKey {
+        /// The key.
+        key: String,
+        /// The nearest known one.
+        nearest: Option<String>,
+        /// Known keys.
+        known: Vec<String>,
+    },
+    /// A key that must be there.
+    MissingKey {
+        /// The key with its table.
+        key: &'static str,
+        /// What to write.
+        example: &'static str,
+    },
+    /// A value that is not possible.
+    Value {
+        /// The key with its table.
+        key: String,
+        /// What was given.
+        given: String,
+        /// What is possible.
+        expected: String,
+    },
+    /// A path that leaves the folder.
+    OutsideFolder {
+        /// The path.
+        path: String,
+    },
+    /// A name that occurs twice or not at all.
+    RunName {
+        /// The name.
+        name: String,
+        /// Names that exist.
+        known: Vec<String>,
+    },
+    /// A file in a form that is not read.
+    Format {
+        /// What it looks like.
+        seen: &'static str,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// More bytes than a compressed file may hold.
+    TooLarge {
+        /// Limit in bytes.
+        limit: u64,
+    },
+    /// A line that is too long to be data.
+    LineTooLong {
+        /// Limit in bytes.
+        limit: usize,
+    },
+    /// No header line, or no rows.
+    Empty {
+        /// What is missing.
+        what: &'static str,
+    },
+    /// Columns that do not make a run file.
+    Columns {
+        /// The header's columns.
+        seen: Vec<String>,
+        /// What is missing or doubled.
+        what: String,
+        /// What to write.
+        remedy: String,
+    },
+    /// A row with another number of fields than the header.
+    Fields {
+        /// In the row.
+        seen: usize,
+        /// In the header.
+        expected: usize,
+    },
+    /// A field that is not what its column holds.
+    Field {
+        /// The text.
+        text: String,
+        /// What was expected.
+        expected: &'static str,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// A dwell that holds more different codes than noise can make.
+    NotADwell {
+        /// Limit of different codes.
+        limit: usize,
+    },
+}
+
+impl fmt::Display for ReadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.place, self.problem)
+    }
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let list = |names: &[String]| {
+            names.iter().map(|n| format!("`{}`", visible(n))).collect::<Vec<_>>().join(", ")
+        };
+        match self {
+            Self::Io(e) => write!(f, "{e}"),
+            Self::NoExperiment { folder } => write!(
+                f,
+                "no experiment.toml in {}; an experiment is a folder with experiment.toml and its run files \
+                 (`tumble simulate OUT --preset paper-3` writes one to look at)",
+                folder.display()
+            ),
+            Self::Toml { message } => write!(f, "{}", visible_lines(message)),
+            Self::UnknownKey { key, nearest, known } => {
+                write!(f, "unknown key `{}`", visible(key))?;
+                match nearest {
+                    Some(n) => write!(f, "; did you mean `{n}`?"),
+                    None => write!(f, "; known here: {}", list(known)),
+                }
+            }
+            Self::MissingKey { key, example } => write!(f, "{key} is missing; write {example}"),
+            Self::Value { key, given, expected } => {
+                write!(f, "{key} = {} is not possible; give {expected}", visible(given))
+            }
+            Self::OutsideFolder { path } => write!(
+                f,
+                "`{}` leaves the experiment folder; copy the file into the folder and name it relative to experiment.toml",
+                visible(path)
+            ),
+            Self::RunName { name, known } => write!(
+                f,
+                "`{}` must name exactly one run; the runs are {}. A run is named after its file, or by `name`",
+                visible(name),
+                list(known)
+            ),
+            Self::Format { seen, remedy } => write!(f, "{seen}; {remedy}"),
+            Self::TooLarge { limit } => write!(
+                f,
+                "unpacks to more than {} GiB; split the record into runs, or unpack it",
+                limit >> 30
+            ),
+            Self::LineTooLong { limit } => {
+                write!(f, "a line longer than {limit} bytes; is this a CSV file?")
+            }
+            Self::Empty { what } => write!(f, "{what}"),
+            Self::Columns { seen, what, remedy } => {
+                write!(f, "{what}; the header has {}; {remedy}", list(seen))
+            }
+            Self::Fields { seen, expected } => write!(
+                f,
+                "{seen} fields where the header has {expected}; mend or remove the row (a truncated last line is common)"
+            ),
+            Self::Field { text, expected, remedy } => {
+                write!(f, "`{}` is not {expected}; {remedy}", visible(text))
+            }
+            Self::NotADwell { limit } => write!(
+                f,
+                "one dwell with more than {limit} different codes; dwells are consecutive rows of one angle, so check the angle column"
+            ),
+        }
+    }
+}
+
+/// A parser's message may have several lines; each is made visible.
+fn visible_lines(text: &str) -> String {
+    text.lines().map(visible).collect::<Vec<_>>().join("; ")
+}
+
+impl std::error::Error for ReadError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match &self.problem {
+            Problem::Io(e) => Some(e),
+            _ => None,
+        }
+    }
+}

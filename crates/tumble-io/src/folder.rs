@@ -1,0 +1,503 @@
+//! An experiment folder as the core's [`Experiment`].
+
+use std::path::{Component, Path, PathBuf};
+use std::thread;
+
+use tumble_core::{
+    Angle, Bench, Code, ConverterEnds, DEFAULT_VERTICAL_LEAN_ARCMIN, Experiment, Finding,
+    FindingKind, Gravity, GravitySource, Output, Position, Quantizer, Readings, Run, Seat, Sensor,
+    Targets, VerticalPair,
+};
+
+use crate::csv::{Dwell, RunFileOptions, read_run_file};
+use crate::error::{Place, Problem, ReadError};
+use crate::experiment_file::{
+    self, BenchTable, ExperimentFile, Orientation, OutputTable, QuantizerName, RunTable, ScaleTable,
+};
+
+/// Name of the file that makes a folder an experiment.
+const EXPERIMENT_FILE: &str = "experiment.toml";
+
+/// One input with its digest.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FileDigest {
+    /// Path relative to the folder, with `/`.
+    pub file: String,
+    /// SHA-256 of the file as it is stored, hexadecimal.
+    pub sha256: String,
+}
+
+/// An experiment as read, with what the passport wants to know about its files.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExperimentFolder {
+    /// What was measured.
+    pub experiment: Experiment,
+    /// Number of the certificate, from the folder.
+    pub id: Option<String>,
+    /// Day of issue, from the folder.
+    pub issued: Option<String>,
+    /// All inputs, in the order of experiment.toml.
+    pub inputs: Vec<FileDigest>,
+    /// What was noticed while reading.
+    pub findings: Vec<Finding>,
+    /// Operators and notes by run.
+    pub remarks: Vec<RunRemark>,
+}
+
+/// What people wrote about a run.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct RunRemark {
+    /// Who measured.
+    pub operator: Option<String>,
+    /// Anything else.
+    pub note: Option<String>,
+}
+
+/// Reads an experiment folder: `experiment.toml` and the files that it names.
+///
+/// **Errors** [`ReadError`] with file, line, column and remedy for everything that is not understood. Degenerate
+/// data are no error here.
+pub fn read_experiment(folder: &Path) -> Result<ExperimentFolder, ReadError> {
+    let toml_path = folder.join(EXPERIMENT_FILE);
+    let bytes = std::fs::read(&toml_path).map_err(|e| match e.kind() {
+        std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory => ReadError {
+            place: Place::file(folder.display().to_string()),
+            problem: Problem::NoExperiment { folder: folder.to_path_buf() },
+        },
+        _ => ReadError { place: Place::file(EXPERIMENT_FILE), problem: Problem::Io(e) },
+    })?;
+    let text = std::str::from_utf8(&bytes).map_err(|_| ReadError {
+        place: Place::file(EXPERIMENT_FILE),
+        problem: Problem::Format { seen: "not UTF-8 text", remedy: "save the file as UTF-8" },
+    })?;
+    let file = experiment_file::parse(text, EXPERIMENT_FILE)?;
+    if let Some(format) = file.format.filter(|f| *f != 1) {
+        return Err(value("format", format, "1: this is a file of a newer version"));
+    }
+    let output = output(&file.output)?;
+    let bench = bench(&file.bench)?;
+    let names = run_names(&file.run)?;
+    let mut inputs = vec![FileDigest {
+        file: EXPERIMENT_FILE.into(),
+        sha256: crate::digest::sha256(&bytes),
+    }];
+    let mut findings = Vec::new();
+
+    let reader = Reader { folder, output: &output, bench: &bench, table: &file.bench };
+    let vertical = match &file.scale {
+        Some(scale) => Some(reader.vertical(scale, &names, &mut inputs, &mut findings)?),
+        None => None,
+    };
+    let mut runs = Vec::new();
+    for result in reader.runs(&file.run, &names) {
+        let (run, digests, found) = result?;
+        runs.push(run);
+        inputs.extend(digests);
+        findings.extend(found);
+    }
+    if runs.is_empty() && vertical.is_none() {
+        return Err(ReadError {
+            place: Place::file(EXPERIMENT_FILE),
+            problem: Problem::MissingKey {
+                key: "[[run]]",
+                example: "[[run]] with file = \"run-1.csv\", or [scale] with up and down",
+            },
+        });
+    }
+    Ok(ExperimentFolder {
+        experiment: Experiment {
+            sensor: Sensor {
+                model: file.sensor.model.clone(),
+                serial: file.sensor.serial.clone(),
+                axis: file.sensor.axis.clone(),
+            },
+            output,
+            bench,
+            vertical,
+            runs,
+            targets: targets(&file)?,
+        },
+        id: file.id.clone(),
+        issued: file.issued.as_ref().map(experiment_file::date_text),
+        inputs,
+        findings,
+        remarks: file
+            .run
+            .iter()
+            .map(|r| RunRemark { operator: r.operator.clone(), note: r.note.clone() })
+            .collect(),
+    })
+}
+
+fn value(key: &str, given: impl ToString, expected: &str) -> ReadError {
+    ReadError {
+        place: Place::file(EXPERIMENT_FILE),
+        problem: Problem::Value {
+            key: key.to_owned(),
+            given: given.to_string(),
+            expected: expected.to_owned(),
+        },
+    }
+}
+
+fn missing(key: &'static str, example: &'static str) -> ReadError {
+    ReadError {
+        place: Place::file(EXPERIMENT_FILE),
+        problem: Problem::MissingKey { key, example },
+    }
+}
+
+/// A number that must be finite and at least (or more than) zero.
+fn not_negative(key: &str, given: Option<f64>, expected: &str) -> Result<Option<f64>, ReadError> {
+    match given {
+        Some(v) if !(v.is_finite() && v >= 0.0) => Err(value(key, v, expected)),
+        other => Ok(other),
+    }
+}
+
+fn positive(key: &str, given: Option<f64>, expected: &str) -> Result<Option<f64>, ReadError> {
+    match given {
+        Some(v) if !(v.is_finite() && v > 0.0) => Err(value(key, v, expected)),
+        other => Ok(other),
+    }
+}
+
+fn output(table: &OutputTable) -> Result<Output, ReadError> {
+    let quantizer = match table.quantizer {
+        QuantizerName::Truncate => Quantizer::Truncate,
+        QuantizerName::Floor => Quantizer::Floor,
+        QuantizerName::Round => Quantizer::Round,
+        QuantizerName::None => Quantizer::None,
+    };
+    let unit = match (quantizer, &table.unit) {
+        (Quantizer::None, Some(unit)) => unit.clone(),
+        (Quantizer::None, None) => {
+            return Err(missing("[output] unit", "unit = \"V\" (the unit of the column `output`)"));
+        }
+        (_, None) => "LSB".into(),
+        (_, Some(unit)) if unit == "LSB" => "LSB".into(),
+        (_, Some(unit)) => {
+            return Err(value("[output] unit", unit, "it only with quantizer = \"none\"; codes are in LSB"));
+        }
+    };
+    if let (Some(lo), Some(hi)) = (table.min_code, table.max_code)
+        && lo >= hi
+    {
+        return Err(value("[output] max_code", hi, "more than min_code"));
+    }
+    let nominal = "m/s² per LSB, a positive number (g per LSB times 9.80665)";
+    Ok(Output {
+        quantizer,
+        unit,
+        nominal_scale_m_s2_per_lsb: positive("[output] nominal_scale", table.nominal_scale, nominal)?,
+        rate_hz: positive("[output] rate_hz", table.rate_hz, "samples per second")?,
+        ends: ConverterEnds {
+            min_code: table.min_code.map(Code),
+            max_code: table.max_code.map(Code),
+        },
+    })
+}
+
+fn bench(table: &BenchTable) -> Result<Bench, ReadError> {
+    let gravity_range = "local gravity in m/s², between 9.7 and 9.9";
+    let gravity = match (table.gravity, table.latitude_deg, table.height_m) {
+        (Some(g), None, None) => {
+            if !(9.7..=9.9).contains(&g) {
+                return Err(value("[bench] gravity", g, gravity_range));
+            }
+            let u = not_negative(
+                "[bench] gravity_uncertainty",
+                table.gravity_uncertainty,
+                "a standard uncertainty in m/s²",
+            )?;
+            Gravity {
+                value_m_s2: g,
+                standard_uncertainty_m_s2: u.unwrap_or(0.0),
+                source: if u.is_some() {
+                    GravitySource::Stated
+                } else {
+                    GravitySource::StatedWithoutUncertainty
+                },
+            }
+        }
+        (None, Some(latitude), height) => {
+            let height = height.ok_or_else(|| missing("[bench] height_m", "height_m = 150.0"))?;
+            if !(-90.0..=90.0).contains(&latitude) {
+                return Err(value("[bench] latitude_deg", latitude, "degrees between −90 and 90"));
+            }
+            if !(-500.0..=9000.0).contains(&height) {
+                return Err(value("[bench] height_m", height, "metres between −500 and 9000"));
+            }
+            Gravity::normal(latitude, height)
+        }
+        (None, None, _) => {
+            return Err(missing(
+                "[bench] gravity",
+                "gravity = 9.81 (m/s², local), or latitude_deg and height_m",
+            ));
+        }
+        (Some(_), _, _) => {
+            return Err(value("[bench] gravity", "given twice", "gravity, or latitude_deg and height_m, not both"));
+        }
+    };
+    let range = match table.angle_range_deg {
+        Some([lo, hi]) if lo < hi => Some((Angle::from_deg(lo), Angle::from_deg(hi))),
+        Some([lo, hi]) => {
+            return Err(value("[bench] angle_range_deg", format!("[{lo}, {hi}]"), "[lowest, highest] in degrees"));
+        }
+        None => None,
+    };
+    if let Some(sign) = table.angle_sign.filter(|s| s.abs() != 1.0) {
+        return Err(value("[bench] angle_sign", sign, "1 or -1"));
+    }
+    if let Some(zero) = table.angle_zero_deg.filter(|z| !z.is_finite()) {
+        return Err(value("[bench] angle_zero_deg", zero, "degrees"));
+    }
+    let arcmin = "minutes of arc, standard, not negative";
+    Ok(Bench {
+        gravity,
+        angle_uncertainty: not_negative(
+            "[bench] angle_uncertainty_arcmin",
+            table.angle_uncertainty_arcmin,
+            arcmin,
+        )?
+        .map(Angle::from_arcmin),
+        range,
+        vertical_lean: Angle::from_arcmin(
+            not_negative("[bench] updown_lean_arcmin", table.updown_lean_arcmin, arcmin)?
+                .unwrap_or(DEFAULT_VERTICAL_LEAN_ARCMIN),
+        ),
+    })
+}
+
+fn targets(file: &ExperimentFile) -> Result<Targets, ReadError> {
+    let default = Targets::default();
+    let expected = "a positive expanded uncertainty";
+    let spec = &file.spec;
+    let or = |key, given, default| Ok::<_, ReadError>(positive(key, given, expected)?.unwrap_or(default));
+    Ok(Targets {
+        bias_m_s2: or("[spec] target_bias_m_s2", spec.target_bias_m_s2, default.bias_m_s2)?,
+        misalignment_rad: or(
+            "[spec] target_misalignment_rad",
+            spec.target_misalignment_rad,
+            default.misalignment_rad,
+        )?,
+        scale_error: or("[spec] target_scale_error", spec.target_scale_error, default.scale_error)?,
+    })
+}
+
+/// Runs are named by `name`, else after their file, else by their number; names are unique.
+fn run_names(runs: &[RunTable]) -> Result<Vec<String>, ReadError> {
+    let names: Vec<String> = runs
+        .iter()
+        .enumerate()
+        .map(|(i, r)| match (&r.name, &r.file) {
+            (Some(name), _) => name.clone(),
+            (None, Some(file)) => stem(file),
+            (None, None) => format!("run-{}", i + 1),
+        })
+        .collect();
+    for (i, name) in names.iter().enumerate() {
+        if names[..i].contains(name) {
+            return Err(ReadError {
+                place: Place::file(EXPERIMENT_FILE),
+                problem: Problem::RunName { name: name.clone(), known: names },
+            });
+        }
+    }
+    Ok(names)
+}
+
+/// `data/run-1.csv.gz` → `run-1`.
+fn stem(file: &str) -> String {
+    let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
+    name.trim_end_matches(".gz").trim_end_matches(".csv").trim_end_matches(".txt").to_owned()
+}
+
+type ReadRun = Result<(Run, Vec<FileDigest>, Vec<Finding>), ReadError>;
+
+struct Reader<'a> {
+    folder: &'a Path,
+    output: &'a Output,
+    bench: &'a Bench,
+    table: &'a BenchTable,
+}
+
+impl Reader<'_> {
+    /// A file inside the folder; links that lead out count as outside.
+    fn inside(&self, file: &str) -> Result<PathBuf, ReadError> {
+        let outside = || ReadError {
+            place: Place::file(EXPERIMENT_FILE),
+            problem: Problem::OutsideFolder { path: file.to_owned() },
+        };
+        let relative = Path::new(file);
+        let plain = relative.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
+        if !plain || file.is_empty() || file.contains('\\') {
+            return Err(outside());
+        }
+        let path = self.folder.join(relative);
+        let io = |e| ReadError { place: Place::file(file), problem: Problem::Io(e) };
+        let real = path.canonicalize().map_err(io)?;
+        let root = self.folder.canonicalize().map_err(io)?;
+        if real.starts_with(root) { Ok(path) } else { Err(outside()) }
+    }
+
+    /// Runs in parallel, combined in the order of experiment.toml.
+    fn runs(&self, tables: &[RunTable], names: &[String]) -> Vec<ReadRun> {
+        let workers = thread::available_parallelism().map_or(1, |n| n.get()).min(tables.len().max(1));
+        let mut results: Vec<Option<ReadRun>> = tables.iter().map(|_| None).collect();
+        thread::scope(|scope| {
+            let handles: Vec<_> = (0..workers)
+                .map(|w| {
+                    scope.spawn(move || {
+                        (w..tables.len())
+                            .step_by(workers)
+                            .map(|i| (i, self.run(&tables[i], &names[i])))
+                            .collect::<Vec<_>>()
+                    })
+                })
+                .collect();
+            for handle in handles {
+                match handle.join() {
+                    Ok(done) => done.into_iter().for_each(|(i, r)| results[i] = Some(r)),
+                    Err(panic) => std::panic::resume_unwind(panic),
+                }
+            }
+        });
+        results.into_iter().flatten().collect()
+    }
+
+    fn run(&self, table: &RunTable, name: &str) -> ReadRun {
+        let mut positions = Vec::new();
+        let mut digests = Vec::new();
+        let mut findings = Vec::new();
+        let files: Vec<(&str, Option<f64>)> = match (&table.file, &table.files[..]) {
+            (Some(file), []) => vec![(file, None)],
+            (None, [_, ..]) => table.files.iter().map(|f| (f.file.as_str(), Some(f.angle_deg))).collect(),
+            (None, []) => return Err(missing("[[run]] file", "file = \"run-1.csv\"")),
+            (Some(_), _) => {
+                return Err(value("[[run]] files", "given beside file", "one of the two"));
+            }
+        };
+        for (file, fixed_angle_deg) in files {
+            let options = self.options(&table.columns, fixed_angle_deg, table.discard_s)?;
+            let read = read_run_file(&self.inside(file)?, file, &options)?;
+            digests.push(FileDigest { file: file.to_owned(), sha256: read.sha256 });
+            if !read.ignored.is_empty() {
+                findings.push(ignored_columns(file, &read.ignored));
+            }
+            for (i, dwell) in read.dwells.into_iter().enumerate() {
+                positions.push(self.position(dwell, file, i, table));
+            }
+        }
+        let mounting = table.mounting.clone().unwrap_or_else(|| "A".into());
+        let run = Run {
+            name: name.to_owned(),
+            // Turned by 180°, what belongs to the seat changes its sign against what belongs to the table.
+            mounting: match table.orientation {
+                Orientation::Normal => mounting,
+                Orientation::Reversed => format!("{mounting} reversed"),
+            },
+            positions,
+            date: table.date.as_ref().map(experiment_file::date_text),
+        };
+        Ok((run, digests, findings))
+    }
+
+    fn options<'b>(
+        &self,
+        mapping: &'b std::collections::BTreeMap<String, String>,
+        fixed_angle_deg: Option<f64>,
+        discard_s: Option<f64>,
+    ) -> Result<RunFileOptions<'b>, ReadError> {
+        Ok(RunFileOptions {
+            mapping,
+            fixed_angle_deg,
+            discard_s: not_negative("discard_s", discard_s, "seconds")?.unwrap_or(0.0),
+            rate_hz: self.output.rate_hz,
+            quantizer: self.output.quantizer,
+        })
+    }
+
+    /// A dwell at its angle: the dial's zero and sign, then the run's orientation.
+    fn position(&self, dwell: Dwell, file: &str, index: usize, table: &RunTable) -> Position {
+        let zero = self.table.angle_zero_deg.unwrap_or(0.0);
+        let sign = self.table.angle_sign.unwrap_or(1.0);
+        let turned = match table.orientation {
+            Orientation::Normal => 1.0,
+            Orientation::Reversed => -1.0,
+        };
+        let angle = Angle::from_deg(turned * sign * (dwell.dial_deg - zero));
+        Position {
+            angle,
+            seat: self.bench.seat(angle),
+            readings: dwell.readings,
+            temperature_degc: dwell.temperature_degc.or(table.temperature_degc),
+            place: format!("{file}, line {}, dwell {} ({}°)", dwell.line, index + 1, dwell.dial_deg),
+        }
+    }
+
+    fn vertical(
+        &self,
+        scale: &ScaleTable,
+        names: &[String],
+        inputs: &mut Vec<FileDigest>,
+        findings: &mut Vec<Finding>,
+    ) -> Result<VerticalPair, ReadError> {
+        if let Some(run) = scale.run.as_ref().filter(|r| !names.contains(r)) {
+            return Err(ReadError {
+                place: Place::file(EXPERIMENT_FILE),
+                problem: Problem::RunName { name: run.clone(), known: names.to_vec() },
+            });
+        }
+        let mut dwell = |seat: Seat| {
+            let (key, file, mean, samples, std) = match seat {
+                Seat::Down => (
+                    "[scale] down",
+                    &scale.down,
+                    scale.down_mean_code,
+                    scale.down_samples,
+                    scale.down_std_code,
+                ),
+                _ => ("[scale] up", &scale.up, scale.up_mean_code, scale.up_samples, scale.up_std_code),
+            };
+            let (readings, temperature_degc, place) = match (file, mean) {
+                (Some(file), None) => {
+                    let angle = if seat == Seat::Down { -90.0 } else { 90.0 };
+                    let options = self.options(&scale.columns, Some(angle), scale.discard_s)?;
+                    let read = read_run_file(&self.inside(file)?, file, &options)?;
+                    inputs.push(FileDigest { file: file.clone(), sha256: read.sha256 });
+                    if !read.ignored.is_empty() {
+                        findings.push(ignored_columns(file, &read.ignored));
+                    }
+                    let mut dwells = read.dwells.into_iter();
+                    match (dwells.next(), dwells.next()) {
+                        (Some(d), None) => (d.readings, d.temperature_degc, file.clone()),
+                        _ => return Err(value(key, file, "a file with one dwell")),
+                    }
+                }
+                (None, Some(mean)) if mean.is_finite() => {
+                    let readings = Readings::Averaged { mean, samples: samples.unwrap_or(1).max(1), std };
+                    (readings, None, key.to_owned())
+                }
+                (None, None) => {
+                    return Err(missing("[scale] up and down", "up = \"up.csv\" and down = \"down.csv\", or up_mean_code and down_mean_code"));
+                }
+                (_, Some(mean)) => return Err(value(key, mean, "a file or a mean code, not both")),
+            };
+            let angle = Angle::from_deg(if seat == Seat::Down { -90.0 } else { 90.0 });
+            Ok(Position { angle, seat, readings, temperature_degc, place })
+        };
+        Ok(VerticalPair { up: dwell(Seat::Up)?, down: dwell(Seat::Down)?, run: scale.run.clone() })
+    }
+}
+
+fn ignored_columns(file: &str, columns: &[String]) -> Finding {
+    Finding {
+        kind: FindingKind::IgnoredColumns,
+        place: file.to_owned(),
+        observed: columns.join(", "),
+        limit: "angle_deg, code, t_s, temperature_degc, position".into(),
+        remedy: "if one of them holds something that matters, name it in `columns` of its [[run]]".into(),
+    }
+}

@@ -1,0 +1,67 @@
+//! The passport's wire format, `tumble-passport/1`.
+//!
+//! Within `/1` fields are only added; readers ignore what they do not know. The published JSON Schema is
+//! `docs/passport.schema.json`. Numbers are SI unless a name says otherwise; `null` stands for what could not be
+//! determined, and for infinite degrees of freedom.
+
+mod build;
+mod types;
+
+pub use build::build;
+pub(crate) use build::quantizer_name;
+pub use types::*;
+
+/// Name and major version of the format.
+pub const SCHEMA: &str = "tumble-passport/1";
+
+impl Passport {
+    /// Reads a passport of major version 1.
+    ///
+    /// **Errors** [`PassportError`].
+    pub fn from_json(text: &str) -> Result<Self, PassportError> {
+        #[derive(serde::Deserialize)]
+        struct Head {
+            schema: String,
+        }
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let head: Head = serde_json::from_str(text).map_err(PassportError::Json)?;
+        if head.schema != SCHEMA {
+            return Err(PassportError::Schema { seen: head.schema });
+        }
+        serde_json::from_str(text).map_err(PassportError::Json)
+    }
+
+    /// Writes it, indented, with a final newline. The same passport gives the same bytes.
+    pub fn to_json(&self) -> Result<String, PassportError> {
+        let mut text = serde_json::to_string_pretty(self).map_err(PassportError::Json)?;
+        text.push('\n');
+        Ok(text)
+    }
+}
+
+/// A passport that cannot be read.
+#[derive(Debug)]
+pub enum PassportError {
+    /// Not JSON, or a field is of the wrong type.
+    Json(serde_json::Error),
+    /// Another schema or major version.
+    Schema {
+        /// What the file says.
+        seen: String,
+    },
+}
+
+impl std::fmt::Display for PassportError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Json(e) => write!(f, "not a passport: {}", crate::error::visible(&e.to_string())),
+            Self::Schema { seen } => write!(
+                f,
+                "schema `{}` is not `{SCHEMA}`; use the version of tumble that wrote it",
+                crate::error::visible(seen)
+            ),
+        }
+    }
+}
+
+impl std::error::Error for PassportError {}

@@ -1,0 +1,317 @@
+//! Shapes of `passport.json`. What a field means is written in `docs/passport.md`.
+#![allow(missing_docs)] // Field names are the documentation of the schema; see docs/passport.md.
+
+use serde::{Deserialize, Serialize};
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Passport {
+    pub schema: String,
+    #[serde(default)]
+    pub id: String,
+    #[serde(default)]
+    pub issued: Option<String>,
+    pub verdict: String,
+    #[serde(default)]
+    pub reasons: Vec<String>,
+    #[serde(default)]
+    pub missing: Vec<String>,
+    pub conformity: Conformity,
+    pub sensor: Sensor,
+    pub output: Output,
+    pub bench: Bench,
+    pub method: String,
+    pub nominal_scale_m_s2_per_lsb: f64,
+    pub nominal_scale_source: String,
+    pub validity: Validity,
+    pub parameters: Vec<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub result: Option<ResultSection>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub compensation: Option<Compensation>,
+    pub runs: Vec<Run>,
+    pub error_level_lsb: Option<ErrorLevel>,
+    #[serde(default)]
+    pub structure: Option<Structure>,
+    #[serde(default)]
+    pub influence: Influence,
+    #[serde(default)]
+    pub budget: Vec<BudgetLine>,
+    #[serde(default)]
+    pub findings: Vec<Finding>,
+    #[serde(default)]
+    pub inputs: Vec<Input>,
+    pub options: Options,
+    pub software: Software,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Conformity {
+    pub status: String,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Sensor {
+    pub model: String,
+    pub serial: String,
+    pub axis: String,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Output {
+    pub quantizer: String,
+    pub unit: String,
+    pub rate_hz: Option<f64>,
+    pub min_code: Option<i32>,
+    pub max_code: Option<i32>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Bench {
+    pub gravity_m_s2: Gravity,
+    pub angle_uncertainty_arcmin: Option<f64>,
+    pub angle_range_deg: Option<[f64; 2]>,
+    pub updown_lean_arcmin: f64,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Gravity {
+    pub value: f64,
+    pub standard_uncertainty: f64,
+    #[serde(default)]
+    pub source: String,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Validity {
+    pub temperature_degc: Option<[f64; 2]>,
+    pub dates: Vec<String>,
+}
+
+/// One estimate with the fields that apply to it.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    #[serde(default)]
+    pub value: f64,
+    #[serde(default)]
+    pub unit: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lsb: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub standard_uncertainty: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub u_statistical: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub u_budget: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub expanded_uncertainty: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub coverage_factor: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub degrees_of_freedom: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub level: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interval: Option<[f64; 2]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub prediction_interval: Option<[f64; 2]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub between_run_sd: Option<f64>,
+    /// What the runs' intervals have in common: a picture of agreement, never the result.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub intersection_of_runs: Option<[f64; 2]>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ResultSection {
+    pub bias: Estimate,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub misalignment: Option<Estimate>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mountings: Vec<Mounting>,
+    pub scale_error: Estimate,
+    pub scale_factor: Estimate,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub covariance: Option<[[f64; 3]; 3]>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Mounting {
+    pub name: String,
+    pub misalignment: Estimate,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Compensation {
+    pub scale_factor: f64,
+    pub bias: f64,
+    pub quantizer_offset: String,
+    pub valid_range_lsb: [f64; 2],
+    /// Of (scale factor, bias).
+    pub covariance: [[f64; 2]; 2],
+    /// Standard deviation of a single reading within a dwell, LSB.
+    #[serde(default)]
+    pub reading_std_lsb: Option<f64>,
+    pub example: Example,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Example {
+    pub code: i32,
+    pub acceleration_m_s2: f64,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct RunEstimates {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bias: Option<Estimate>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub misalignment: Option<Estimate>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale_error: Option<Estimate>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Run {
+    pub name: String,
+    pub mounting: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub date: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub operator: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub note: Option<String>,
+    pub positions: usize,
+    pub distinct_angles: usize,
+    pub estimates: RunEstimates,
+    /// Statistical, in the order of `parameters`.
+    pub covariance: Option<[[f64; 3]; 3]>,
+    pub residual_std_lsb: Option<f64>,
+    pub reading_std_lsb: Option<f64>,
+    /// `null`: infinite, a parameter is not determined.
+    pub condition_number: Option<f64>,
+    pub correlations: Vec<Correlation>,
+    pub settled_at: Option<usize>,
+    pub sequential: Vec<Sequential>,
+    pub residuals: Vec<Residual>,
+    pub error_level_lsb: Option<RunErrorLevel>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Correlation {
+    pub between: [String; 2],
+    pub value: f64,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Sequential {
+    pub positions: usize,
+    pub bias: f64,
+    pub misalignment: f64,
+    pub scale_error: f64,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Residual {
+    pub angle_deg: f64,
+    pub lsb: f64,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RunErrorLevel {
+    pub before: f64,
+    pub after: f64,
+    pub after_held_out: Option<f64>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ErrorLevel {
+    pub before: f64,
+    pub after: f64,
+    pub after_held_out: Option<f64>,
+}
+
+/// A curvature left over in the residuals of all runs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StructureTerm {
+    pub peak_lsb: f64,
+    pub p_value: f64,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Structure {
+    pub quadratic: Option<StructureTerm>,
+    pub cubic: Option<StructureTerm>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct InfluenceTest {
+    pub effect: f64,
+    pub unit: String,
+    pub expanded_uncertainty: f64,
+    pub p_value: f64,
+    pub smallest_detectable: f64,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Influence {
+    /// `null`: no temperature was recorded, or it did not vary within the runs.
+    pub temperature: Option<InfluenceTest>,
+    /// `null`: the plan cannot tell it from the parameters.
+    pub signal_level: Option<InfluenceTest>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BudgetLine {
+    pub parameter: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mounting: Option<String>,
+    pub quantity: String,
+    pub standard_uncertainty: f64,
+    pub unit: String,
+    pub distribution: String,
+    /// `null`: infinite.
+    pub degrees_of_freedom: Option<f64>,
+    pub sensitivity: f64,
+    pub contribution: f64,
+    pub share: f64,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Finding {
+    pub id: String,
+    pub severity: String,
+    pub title: String,
+    #[serde(rename = "where")]
+    pub place: String,
+    pub observed: String,
+    pub limit: String,
+    pub todo: String,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Input {
+    pub file: String,
+    pub sha256: String,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Options {
+    pub method: String,
+    pub weights: String,
+    pub level: f64,
+    pub targets: Targets,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Targets {
+    pub bias_m_s2: f64,
+    pub misalignment_rad: f64,
+    pub scale_error: f64,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Software {
+    pub name: String,
+    pub version: String,
+    pub target: String,
+}

@@ -1,0 +1,28 @@
+//! Renders a passport: terminal text, figures (SVG) and one self-contained page (HTML).
+//!
+//! Pure functions from [`Passport`] to text. Nothing is judged, averaged or fitted here: numbers are rounded,
+//! converted to the units that people read, and placed. What the passport does not say is left out and named,
+//! never made up.
+//!
+//! Texts in a passport come from files that strangers wrote. Every public renderer calls [`sanitized`] first, and
+//! all markup is built by `maud`, which escapes.
+//!
+//! Coefficients are shown only where the contract allows: accepted, or indeterminate for want of runs alone. A
+//! rejected passport gets a report of why.
+
+mod figure;
+mod html;
+mod numbers;
+mod runs;
+mod sanitize;
+mod standing;
+mod summary;
+mod units;
+mod words;
+
+pub use figure::{Figure, figures};
+pub use html::html;
+pub use numbers::value_with_uncertainty;
+pub use sanitize::sanitized;
+pub use summary::summary;
+pub use tumble_io::passport::Passport;

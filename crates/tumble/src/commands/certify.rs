@@ -1,0 +1,176 @@
+//! `tumble certify`
+
+use std::collections::BTreeSet;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use tumble_core::estimate::{EstimateOptions, Method, Weights};
+use tumble_io::passport::Passport;
+use tumble_io::{CertifyError, CertifyOptions, Existing, OutputError, OutputFolder, Problem, Written, certify};
+
+use crate::cli::{CertifyArgs, MethodArg, WeightsArg};
+use crate::exit::{Exit, complain};
+use crate::interrupt;
+
+pub(crate) fn run(args: &CertifyArgs) -> Exit {
+    let Some(options) = options(args) else {
+        complain(
+            "--method paper is unweighted by definition; leave --weights out, or use --method exact",
+        );
+        return Exit::Usage;
+    };
+    let several = args.folders.len() > 1;
+    let mut taken = BTreeSet::new();
+    let mut worst = Exit::Ok;
+    for folder in &args.folders {
+        let exit = match certify(folder, &options) {
+            Ok(passport) => {
+                let out = args.out.as_ref().map(|out| {
+                    if several { out.join(subfolder(&passport, folder, &mut taken)) } else { out.clone() }
+                });
+                deliver(args, &passport, folder, out.as_deref(), several)
+            }
+            Err(e) => {
+                // The file is named inside the folder; which folder, only several make unclear.
+                complain(if several { format!("{}: {e}", folder.display()) } else { e.to_string() });
+                match &e {
+                    CertifyError::Read(r) if is_failure(&r.problem) => Exit::Failure,
+                    _ => Exit::Usage,
+                }
+            }
+        };
+        worst = worst.worse(exit);
+        if interrupt::interrupted() {
+            return Exit::Interrupted;
+        }
+    }
+    worst
+}
+
+/// Input that is missing is usage; input that breaks while it is read is a failure.
+fn is_failure(problem: &Problem) -> bool {
+    use std::io::ErrorKind::{InvalidData, InvalidInput, NotFound, PermissionDenied, UnexpectedEof};
+    match problem {
+        Problem::Io(e) => {
+            !matches!(e.kind(), NotFound | PermissionDenied | InvalidData | InvalidInput | UnexpectedEof)
+        }
+        _ => false,
+    }
+}
+
+fn options(args: &CertifyArgs) -> Option<CertifyOptions> {
+    let (method, weights) = match (args.method, args.weights) {
+        (MethodArg::Paper, Some(WeightsArg::Angle)) => return None,
+        (MethodArg::Paper, _) => (Method::Paper, Weights::Equal),
+        (MethodArg::Exact, Some(WeightsArg::Equal)) => (Method::Exact, Weights::Equal),
+        (MethodArg::Exact, _) => (Method::Exact, Weights::Angle),
+    };
+    Some(CertifyOptions {
+        estimate: EstimateOptions { method, weights, level: args.level },
+        id: args.id.clone(),
+        issued: args.issued.clone(),
+    })
+}
+
+/// Prints and writes one passport.
+fn deliver(args: &CertifyArgs, passport: &Passport, folder: &Path, out: Option<&Path>, several: bool) -> Exit {
+    let verdict = verdict_exit(args, passport);
+    let printed = match (args.quiet, args.json, several) {
+        (true, _, _) => Ok(()),
+        (_, true, true) => serde_json::to_string(passport)
+            .map_err(std::io::Error::other)
+            .and_then(|line| print(&format!("{line}\n"))),
+        (_, true, false) => {
+            passport.to_json().map_err(std::io::Error::other).and_then(|text| print(&text))
+        }
+        (_, false, true) => print(&format!("== {}\n{}\n", folder.display(), tumble_report::summary(passport))),
+        (_, false, false) => print(&tumble_report::summary(passport)),
+    };
+    if let Err(e) = printed {
+        // A reader that closed early (`| head`) has what it wanted.
+        if e.kind() != std::io::ErrorKind::BrokenPipe {
+            complain(e);
+            return Exit::Failure;
+        }
+    }
+    let Some(out) = out else { return verdict };
+    match write(passport, out, args) {
+        Ok(written) => {
+            if !args.quiet {
+                tell(out, &written);
+            }
+            verdict
+        }
+        Err(e) => {
+            complain(&e);
+            match e {
+                OutputError::Occupied { .. } => Exit::Usage,
+                OutputError::Interrupted { .. } => Exit::Interrupted,
+                OutputError::Io { .. } => Exit::Failure,
+            }
+        }
+    }
+}
+
+fn verdict_exit(args: &CertifyArgs, passport: &Passport) -> Exit {
+    let warned = passport.findings.iter().any(|f| f.severity == "warning");
+    match passport.verdict.as_str() {
+        "accepted" if args.strict && warned => Exit::Warnings,
+        "accepted" => Exit::Ok,
+        "rejected" => Exit::Rejected,
+        _ => Exit::Indeterminate,
+    }
+}
+
+fn write(passport: &Passport, out: &Path, args: &CertifyArgs) -> Result<Written, OutputError> {
+    let mut output = OutputFolder::default();
+    let json = passport.to_json().map_err(|e| OutputError::Io {
+        path: out.join("passport.json"),
+        source: std::io::Error::other(e.to_string()),
+    })?;
+    output.add("passport.json", json);
+    output.add("passport.html", tumble_report::html(passport));
+    for figure in tumble_report::figures(passport) {
+        output.add(format!("figures/{}.svg", figure.name), figure.svg);
+    }
+    let existing = if args.replace { Existing::Replace } else { Existing::Keep };
+    interrupt::while_writing(|| output.write(out, existing, &interrupt::interrupted))
+}
+
+fn tell(out: &Path, written: &Written) {
+    match written {
+        Written::New => eprintln!("wrote {}", out.join("passport.html").display()),
+        Written::Same => eprintln!("{} holds this result already", out.display()),
+        Written::Replaced { kept } => {
+            eprintln!("wrote {}; the old result is in {}", out.join("passport.html").display(), kept.display());
+        }
+    }
+}
+
+fn print(text: &str) -> std::io::Result<()> {
+    let mut stdout = std::io::stdout().lock();
+    stdout.write_all(text.as_bytes())?;
+    stdout.flush()
+}
+
+/// A name for a unit's folder: its serial, made safe; where two units share it, the experiment's folder is added.
+fn subfolder(passport: &Passport, folder: &Path, taken: &mut BTreeSet<String>) -> PathBuf {
+    let safe = |text: &str| -> String {
+        let kept: String = text
+            .chars()
+            .map(|c| if c.is_alphanumeric() || matches!(c, '-' | '_' | '.') { c } else { '_' })
+            .take(80)
+            .collect();
+        kept.trim_start_matches('.').to_owned()
+    };
+    let of_folder = safe(&folder.file_name().unwrap_or_default().to_string_lossy());
+    let serial = safe(&passport.sensor.serial);
+    let wanted = if serial.is_empty() { of_folder.clone() } else { serial };
+    let name = if taken.contains(&wanted) { format!("{wanted}-{of_folder}") } else { wanted };
+    let name = (1..)
+        .map(|n| if n == 1 { name.clone() } else { format!("{name}-{n}") })
+        .find(|n| !taken.contains(n))
+        .unwrap_or(name);
+    taken.insert(name.clone());
+    PathBuf::from(name)
+}

@@ -1,0 +1,5 @@
+//! One file a command.
+
+pub(crate) mod certify;
+pub(crate) mod compensate;
+pub(crate) mod simulate;

@@ -1,0 +1,62 @@
+//! Exit codes of the contract.
+
+use std::process::ExitCode;
+
+/// How a command ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Exit {
+    /// Accepted, or done.
+    Ok,
+    /// The calibration was rejected.
+    Rejected,
+    /// Usage, or input that cannot be read.
+    Usage,
+    /// Accepted with warnings, under `--strict`.
+    Warnings,
+    /// Indeterminate.
+    Indeterminate,
+    /// I/O or internal failure.
+    Failure,
+    /// Ctrl-C.
+    Interrupted,
+}
+
+impl Exit {
+    /// The number of the contract.
+    pub(crate) fn code(self) -> u8 {
+        match self {
+            Self::Ok => 0,
+            Self::Rejected => 1,
+            Self::Usage => 2,
+            Self::Warnings => 3,
+            Self::Indeterminate => 4,
+            Self::Failure => 5,
+            Self::Interrupted => 130,
+        }
+    }
+
+    /// The graver of two ends, for several experiments in one call.
+    pub(crate) fn worse(self, other: Self) -> Self {
+        let gravity = |e: Self| match e {
+            Self::Ok => 0,
+            Self::Warnings => 1,
+            Self::Indeterminate => 2,
+            Self::Rejected => 3,
+            Self::Usage => 4,
+            Self::Failure => 5,
+            Self::Interrupted => 6,
+        };
+        if gravity(other) > gravity(self) { other } else { self }
+    }
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        Self::from(exit.code())
+    }
+}
+
+/// Prints what went wrong, on standard error.
+pub(crate) fn complain(message: impl std::fmt::Display) {
+    eprintln!("tumble: {message}");
+}
