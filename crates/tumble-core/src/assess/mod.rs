@@ -13,7 +13,7 @@ pub use result::{BudgetLine, CompensationResult, compensation_result};
 pub use verdict::{Verdict, may_carry_result, verdict};
 
 use crate::estimate::{
-    Estimate, EstimateError, EstimateOptions, Residual, Setting, estimate,
+    Estimate, EstimateOptions, Residual, Setting, Weights, estimate,
 };
 use crate::judge::{self, Structure};
 use crate::nominal::{NominalScale, NominalScaleError, nominal_scale};
@@ -74,20 +74,12 @@ impl RunAssessment {
 pub enum AssessError {
     /// Without `k0` there is no scale error.
     NominalScale(NominalScaleError),
-    /// A run's adjustment failed.
-    Estimate {
-        /// Name of the run.
-        run: String,
-        /// Why.
-        source: EstimateError,
-    },
 }
 
 impl std::fmt::Display for AssessError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::NominalScale(e) => e.fmt(f),
-            Self::Estimate { run, source } => write!(f, "{run}: {source}"),
         }
     }
 }
@@ -201,20 +193,7 @@ fn assess_run(
     findings.extend(usable.findings);
     let positions = usable.positions;
     findings.extend(judge::noise(&run.name, &positions, &experiment.output));
-    let estimate = match estimate(&positions, setting, options) {
-        Ok(e) if !positions.is_empty() => Some(e),
-        Ok(_) => None,
-        Err(e) => {
-            findings.push(Finding {
-                kind: FindingKind::NotConverged,
-                place: run.name.clone(),
-                observed: e.to_string(),
-                limit: "a fixed point".into(),
-                remedy: "check the run's angles and codes; `--weights equal` shows what the data hold".into(),
-            });
-            None
-        }
-    };
+    let estimate = adjust(&run.name, &positions, setting, options, findings);
     if let Some(e) = &estimate {
         findings.extend(judge::few_angles(&run.name, e));
         findings.extend(judge::plausible(&run.name, e, options.method, g, options.level));
@@ -233,6 +212,32 @@ fn assess_run(
         temperatures_degc: positions.iter().map(|p| p.temperature_degc).collect(),
         reading_std_lsb: crate::stats::mean(&variances).map(f64::sqrt),
     }
+}
+
+/// Estimates a run. Where weights and solution find no fixed point, equal weights show what the data hold: the
+/// run is rejected all the same, but its residuals can say why.
+fn adjust(
+    run: &str,
+    positions: &[&Position],
+    setting: &Setting<'_>,
+    options: &EstimateOptions,
+    findings: &mut Vec<Finding>,
+) -> Option<Estimate> {
+    if positions.is_empty() {
+        return None;
+    }
+    let error = match estimate(positions, setting, options) {
+        Ok(e) => return Some(e),
+        Err(error) => error,
+    };
+    findings.push(Finding {
+        kind: FindingKind::NotConverged,
+        place: run.to_owned(),
+        observed: error.to_string(),
+        limit: "a fixed point".into(),
+        remedy: "check the run's angles and codes: they do not belong together".into(),
+    });
+    estimate(positions, setting, &EstimateOptions { weights: Weights::Equal, ..*options }).ok()
 }
 
 /// Structure in each run alone and in all together; one finding, the most telling.

@@ -2,12 +2,14 @@
 //!
 //! **Model** (method sections 2–6) `k* (N̂ + c(N̂)) = g sin(φ + Δφ) + Δa`, `k* = k0 (1 + δk)`.
 
+mod design;
 mod equations;
 mod exact;
 mod paper;
 mod sequential;
 mod types;
 
+pub use design::{Prediction, predict};
 pub use equations::{Equation, equations};
 pub use paper::WeightedRow;
 pub use sequential::{SequentialEstimate, Stabilization};
@@ -71,6 +73,10 @@ pub fn estimate(
         residual_std_lsb: fit.residual_std_lsb,
         variance_ratio: fit.variance_ratio,
         condition: identifiability.condition,
+        plan_uncertainty: fit
+            .residual_std_lsb
+            .zip(identifiability.plan_uncertainty)
+            .map(|(s, u)| u.map(|per_m_s2| per_m_s2 * s * setting.nominal_scale_m_s2_per_lsb)),
         stabilization,
         weighted_rows: fit.weighted_rows,
     })
@@ -93,6 +99,8 @@ struct Identifiability {
     determined: [bool; 3],
     /// Columns that are fitted; dropped ones are combinations of these.
     columns: [bool; 3],
+    /// Standard uncertainties for a scatter of 1 m/s²; absent below full rank.
+    plan_uncertainty: Option<[f64; 3]>,
 }
 
 impl Identifiability {
@@ -106,10 +114,16 @@ impl Identifiability {
             rows.iter().for_each(|r| t.push(&select(r, columns), 0.0));
             t
         };
-        let all = triangle([true; 3]).scaled_singular_values();
+        let whole = triangle([true; 3]);
+        let all = whole.scaled_singular_values();
         let condition = all.condition();
-        if condition <= RANK_CONDITION_LIMIT {
-            return Self { condition, determined: [true; 3], columns: [true; 3] };
+        if let (true, Ok(c)) = (condition <= RANK_CONDITION_LIMIT, whole.unit_covariance()) {
+            return Self {
+                condition,
+                determined: [true; 3],
+                columns: [true; 3],
+                plan_uncertainty: Some(core::array::from_fn(|i| c[(i, i)].sqrt())),
+            };
         }
         // A parameter is determined where no vector of the null space touches it.
         let largest = all.values[0];
@@ -122,7 +136,7 @@ impl Identifiability {
             .into_iter()
             .find(|c| triangle(*c).condition() <= RANK_CONDITION_LIMIT)
             .unwrap_or([false; 3]);
-        Self { condition, determined, columns }
+        Self { condition, determined, columns, plan_uncertainty: None }
     }
 
     fn full_rank(&self) -> bool {

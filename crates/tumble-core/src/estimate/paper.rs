@@ -47,7 +47,7 @@ pub(super) fn design_row(position: &Position, gravity_m_s2: f64) -> [f64; 3] {
     row(position.angle.rad(), position.seat, gravity_m_s2)
 }
 
-fn row(angle_rad: f64, seat: Seat, gravity_m_s2: f64) -> [f64; 3] {
+pub(super) fn row(angle_rad: f64, seat: Seat, gravity_m_s2: f64) -> [f64; 3] {
     match seat.vertical_sign() {
         Some(sign) => [1.0, 0.0, -sign * gravity_m_s2],
         None => [1.0, gravity_m_s2 * angle_rad.cos(), -gravity_m_s2 * angle_rad.sin()],

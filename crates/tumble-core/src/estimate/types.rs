@@ -124,6 +124,9 @@ pub struct Estimate {
     pub variance_ratio: Option<f64>,
     /// Condition number with unit columns; infinite where a column is missing.
     pub condition: f64,
+    /// Standard uncertainties that the plan gives at zero errors with the scatter seen. Where the parameters are
+    /// hardly determined, the estimate is far off and the covariance there means little; this still holds.
+    pub plan_uncertainty: Option<[f64; 3]>,
     /// How the estimate settled as positions were added.
     pub stabilization: Stabilization,
     /// The equations of the adjustment, over their standard deviations; for tests of further terms.

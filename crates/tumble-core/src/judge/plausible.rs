@@ -34,7 +34,9 @@ pub fn plausible(
     let factor = student_factor(level, estimate.degrees_of_freedom as f64).unwrap_or(0.0);
     // An uncertain estimate is undetermined before it is implausible.
     let surely_beyond = |p: Parameter, value: f64, limit: f64| {
-        value.abs() - factor * estimate.standard_uncertainty(p).unwrap_or(0.0) > limit
+        let planned = estimate.plan_uncertainty.map_or(0.0, |u| u[p.index()]);
+        let u = estimate.standard_uncertainty(p).unwrap_or(0.0).max(planned);
+        value.abs() - factor * u > limit
     };
     let finding = |kind, observed: String, limit: String, remedy: &str| Finding {
         kind,

@@ -1,6 +1,5 @@
 //! From a truth to codes.
 
-use rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 
@@ -55,11 +54,21 @@ impl Truth {
 }
 
 /// Random numbers of one run: runs have streams of their own, so each can be made alone.
+///
+/// Seed and run are mixed first: neighbouring states of a congruential generator give related streams.
 fn stream(truth: &Truth, run: u32) -> Pcg64 {
-    let mut seed = [0u8; 32];
-    seed[..8].copy_from_slice(&truth.seed.to_le_bytes());
-    seed[16..20].copy_from_slice(&(run + 1).to_le_bytes());
-    Pcg64::from_seed(seed)
+    let mut state = truth.seed ^ u64::from(run).wrapping_mul(0xd1b5_4a32_d192_ed03);
+    let mut mixed = || -> u128 { u128::from(split_mix(&mut state)) << 64 | u128::from(split_mix(&mut state)) };
+    Pcg64::new(mixed(), mixed())
+}
+
+/// SplitMix64 (Steele, Lea, Flood 2014).
+fn split_mix(state: &mut u64) -> u64 {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut z = *state;
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
 }
 
 /// Bias of one power-up (counted from zero), m/s².
@@ -204,7 +213,10 @@ mod tests {
         let other = Truth { seed: 2, ..truth.clone() };
         assert_ne!(experiment(&truth), experiment(&other));
         // Runs have streams of their own.
-        assert_ne!(simulate_run(&truth, 0).positions, simulate_run(&truth, 1).positions);
+        let runs: Vec<_> = (0..20).map(|r| simulate_run(&truth, r).positions).collect();
+        for (i, a) in runs.iter().enumerate() {
+            assert!(runs[..i].iter().all(|b| a != b), "run {i} repeats another");
+        }
     }
 
     #[test]
