@@ -19,7 +19,7 @@ const LONGEST: usize = 500;
 ///
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// # let text = include_str!("../tests/data/empty.json");
+/// # let text = include_str!("../tests/data/least.json");
 /// let mut passport = tumble_report::Passport::from_json(text)?;
 /// passport.sensor.serial = "3\u{1b}[2J".into();
 /// assert_eq!(tumble_report::sanitized(&passport).sensor.serial, "3␛[2J");

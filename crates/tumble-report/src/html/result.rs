@@ -1,0 +1,185 @@
+//! The result table: values, uncertainties, prediction, correlations in words.
+
+use maud::{Markup, html};
+use tumble_io::passport::{Estimate, Passport, ResultSection};
+
+use super::parts::{degrees_of_freedom, maybe, number, numbers, table, text};
+use super::{Page, section};
+use crate::numbers::{NONE, correlation, interval, power_of_ten, rounded_to, typographic, value_with_uncertainty};
+use crate::standing;
+use crate::summary::level;
+use crate::units::{Parameter, Unit};
+use crate::words::{one_line, parameter, tie};
+
+/// A line of the result: name, estimate, unit, second unit.
+struct Line<'p> {
+    name: String,
+    estimate: &'p Estimate,
+    unit: Unit,
+    second: Option<Unit>,
+}
+
+pub(super) fn result(page: &Page<'_>) -> Markup {
+    let Some(result) = standing::result(page.passport) else { return html! {} };
+    let lines = lines(page, result);
+    let level = level(page.passport);
+    let main: Vec<Vec<String>> = lines.iter().map(row).collect();
+    let parts: Vec<Vec<String>> = lines.iter().map(parts_row).collect();
+    let body = html! {
+        (table(
+            "main",
+            &format!("u: standard uncertainty. U = k·u: expanded uncertainty at {level}. ν: effective degrees of freedom."),
+            &[text("Parameter"), numbers("Value"), numbers("± U"), numbers("u"), numbers("k"), numbers("ν"), text("Unit"),
+              text("In other units (± U)")],
+            &main,
+        ))
+        (table(
+            "",
+            &format!("What the uncertainty is made of, and what the next power-up may bring ({level})."),
+            &[text("Parameter"), numbers("u, statistical"), numbers("u, budget"), numbers("sd between runs"),
+              numbers("Next estimate"), text("Unit")],
+            &parts,
+        ))
+        (prediction_note(result))
+        (correlations(page.passport))
+    };
+    section("Result", &body)
+}
+
+fn lines<'p>(page: &Page<'p>, result: &'p ResultSection) -> Vec<Line<'p>> {
+    let line = |name: String, estimate, p: Parameter| Line {
+        name,
+        estimate,
+        unit: page.units.parameter(p).clone(),
+        second: page.units.second(p, page.passport.nominal_scale_m_s2_per_lsb),
+    };
+    let mut out = vec![line("Bias Δa".into(), &result.bias, Parameter::Bias)];
+    if let Some(m) = &result.misalignment {
+        out.push(line("Misalignment Δφ".into(), m, Parameter::Misalignment));
+    }
+    for m in &result.mountings {
+        let name = format!("Misalignment Δφ, mounting {}", one_line(&m.name));
+        out.push(line(name, &m.misalignment, Parameter::Misalignment));
+    }
+    out.push(line("Scale error δk".into(), &result.scale_error, Parameter::ScaleError));
+    out.push(Line {
+        name: "Scale factor k*".into(),
+        estimate: &result.scale_factor,
+        unit: page.units.scale_factor.clone(),
+        second: None,
+    });
+    out
+}
+
+/// Numbers in one unit, rounded to the place of `u`; the power of ten goes to the unit.
+fn in_unit(values: &[Option<f64>], u: Option<f64>, unit: &Unit) -> (Vec<String>, String) {
+    let scaled: Vec<f64> = values.iter().flatten().map(|v| unit.of(*v)).collect();
+    let (texts, name) = match u.and_then(|u| rounded_to(&scaled, unit.of(u))) {
+        Some(r) if r.exponent == 0 => (r.texts, unit.name.clone()),
+        Some(r) => (r.texts, format!("{} {}", power_of_ten(r.exponent), unit.name)),
+        None => (scaled.iter().map(|v| number(*v, 6)).collect(), unit.name.clone()),
+    };
+    let mut texts = texts.into_iter();
+    let cells = values
+        .iter()
+        .map(|v| match v {
+            Some(_) => typographic(&texts.next().unwrap_or_default()),
+            None => NONE.to_owned(),
+        })
+        .collect();
+    (cells, name)
+}
+
+fn row(l: &Line<'_>) -> Vec<String> {
+    let e = l.estimate;
+    let (cells, unit) = in_unit(
+        &[Some(e.value), e.expanded_uncertainty, e.standard_uncertainty],
+        // u has the smaller second digit, and decides for all three.
+        e.standard_uncertainty.filter(|u| *u > 0.0).or(e.expanded_uncertainty),
+        &l.unit,
+    );
+    let second = l.second.as_ref().zip(e.expanded_uncertainty).map(|(unit, u)| {
+        format!("{} {}", typographic(&value_with_uncertainty(unit.of(e.value), unit.of(u))), unit.name)
+    });
+    let mut row = vec![l.name.clone()];
+    row.extend(cells);
+    row.push(maybe(e.coverage_factor, 3));
+    row.push(if e.standard_uncertainty.is_some() { degrees_of_freedom(e.degrees_of_freedom) } else { NONE.into() });
+    row.push(unit);
+    row.push(second.unwrap_or_default());
+    row
+}
+
+fn parts_row(l: &Line<'_>) -> Vec<String> {
+    let e = l.estimate;
+    let short = |v: Option<f64>| maybe(v.map(|v| l.unit.of(v)), 2);
+    let next = e
+        .prediction_interval
+        .map(|[lo, hi]| typographic(&interval(l.unit.of(lo), l.unit.of(hi))))
+        .unwrap_or_else(|| NONE.into());
+    vec![
+        l.name.clone(),
+        short(e.u_statistical),
+        short(e.u_budget),
+        short(e.between_run_sd),
+        next,
+        l.unit.name.clone(),
+    ]
+}
+
+fn prediction_note(result: &ResultSection) -> Markup {
+    html! {
+        @if result.bias.prediction_interval.is_some() {
+            p .small {
+                "“Next estimate” is the prediction interval for the next estimate: what another power-up, measured and \
+                 adjusted like these runs, will give. It is not an interval for the sensor's true value in that power-up, and \
+                 it is wider than ± U, which holds for the mean over power-ups."
+            }
+        } @else {
+            p .small {
+                "There is no interval for the next power-up: one run does not show how much the sensor changes between \
+                 power-ups."
+            }
+        }
+    }
+}
+
+/// Correlations and condition numbers of the runs, in words.
+fn correlations(p: &Passport) -> Markup {
+    let pairs = p.runs.iter().flat_map(|r| &r.correlations);
+    let mut strongest: Option<(&[String; 2], f64, f64)> = None;
+    for c in pairs.filter(|c| c.value.is_finite()) {
+        strongest = Some(match strongest {
+            Some((between, lo, hi)) if *between == c.between => {
+                (between, lo.min(c.value), hi.max(c.value))
+            }
+            Some((between, lo, hi)) if lo.abs().max(hi.abs()) >= c.value.abs() => (between, lo, hi),
+            _ => (&c.between, c.value, c.value),
+        });
+    }
+    let conditions = p.runs.iter().filter_map(|r| r.condition_number);
+    let condition = span(conditions.clone().reduce(f64::min), conditions.reduce(f64::max), |v| number(v, 2));
+    html! {
+        @if let Some(([a, b], lo, hi)) = strongest {
+            @let r = span(Some(lo), Some(hi), |v| typographic(&correlation(v))).unwrap_or_default();
+            p {
+                "Correlations: " (parameter(a)) " and " (parameter(b)) " are " (tie(lo.abs().max(hi.abs())))
+                " (r = " (r) " within a run). "
+                @if lo.abs().max(hi.abs()) >= 0.9 {
+                    "An error in the one is made up for by the other: over the angles that were measured the compensated \
+                     acceleration is known better than either alone. Take both from this passport, never one of them, and \
+                     carry the covariance along; beyond those angles this does not hold. "
+                }
+                @if let Some(condition) = condition {
+                    "Condition number of the adjustment (columns of unit length): " (condition) "."
+                }
+            }
+        }
+    }
+}
+
+/// `0.1`, or `0.1 to 0.2` where both ends read differently.
+fn span(lo: Option<f64>, hi: Option<f64>, shown: impl Fn(f64) -> String) -> Option<String> {
+    let (lo, hi) = (shown(lo?), shown(hi?));
+    Some(if lo == hi { lo } else { format!("{lo} to {hi}") })
+}

@@ -1,0 +1,158 @@
+//! The terminal summary: verdict in words first, 80 columns, plain text.
+
+use std::fmt::Write as _;
+
+use tumble_io::passport::{Estimate, Finding, Passport};
+
+use crate::numbers::{interval, significant, value_with_uncertainty};
+use crate::runs::mountings;
+use crate::standing::{GROUPS, Standing, bare_sentences, compensation, result};
+use crate::units::{Parameter, Unit, Units};
+use crate::words::{as_sentence, counted, one_line, shortened, wrapped};
+
+const WIDTH: usize = 80;
+/// Column at which values start.
+const VALUES: usize = 16;
+
+/// A short summary for the terminal.
+///
+/// Verdict in words first, then the numbers that the verdict allows, then what to know and what to do. ASCII signs,
+/// so that numbers can be copied. A rejected passport shows reasons only.
+#[must_use]
+pub fn summary(passport: &Passport) -> String {
+    let p = crate::sanitized(passport);
+    let standing = Standing::of(&p);
+    let mut out = String::new();
+    out.push_str(&wrapped(
+        &format!("{} - ", standing.word()),
+        standing.meaning(),
+        standing.word().len() + 3,
+        WIDTH,
+    ));
+    if let Some(loud) = standing.loud() {
+        let _ = writeln!(out, "\n  *** {} ***", loud.to_uppercase());
+    }
+    out.push('\n');
+    subject(&mut out, &p);
+    numbers(&mut out, &p);
+    findings(&mut out, &p);
+    out
+}
+
+fn row(out: &mut String, name: &str, value: &str) {
+    let _ = writeln!(out, "  {name:<width$}{value}", width = VALUES - 2);
+}
+
+fn subject(out: &mut String, p: &Passport) {
+    let sensor = format!(
+        "{}, serial {}, axis {}",
+        shortened(&p.sensor.model, 24),
+        shortened(&p.sensor.serial, 24),
+        shortened(&p.sensor.axis, 8)
+    );
+    row(out, "sensor", &sensor);
+    let positions: Vec<usize> = p.runs.iter().map(|r| r.positions).collect();
+    let each = match (positions.iter().min(), positions.iter().max()) {
+        (Some(a), Some(b)) if a == b => format!(" of {}", counted(*a, "position")),
+        (Some(a), Some(b)) => format!(" of {a} to {b} positions"),
+        _ => String::new(),
+    };
+    let mounted = mountings(p).len();
+    let mounted = if mounted > 1 { format!(", {mounted} mountings") } else { String::new() };
+    row(out, "measured", &format!("{}{each}{mounted}; method {}", counted(p.runs.len(), "run"), shortened(&p.method, 12)));
+}
+
+/// The level of confidence in per cent: `95 %`.
+pub(crate) fn level(p: &Passport) -> String {
+    let text = significant(p.options.level * 100.0, 5);
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    format!("{text} %")
+}
+
+/// A value with its expanded uncertainty, in a unit of display.
+fn value(estimate: &Estimate, unit: &Unit) -> String {
+    let shown = match estimate.expanded_uncertainty {
+        Some(u) => value_with_uncertainty(unit.of(estimate.value), unit.of(u)),
+        None => significant(unit.of(estimate.value), 6),
+    };
+    format!("{shown} {}", unit.name)
+}
+
+fn numbers(out: &mut String, p: &Passport) {
+    let Some(r) = result(p) else { return };
+    let units = Units::of(p);
+    let _ = writeln!(out, "\n  value ± expanded uncertainty ({})", level(p));
+    let mut line = |name: &str, parameter: Parameter, e: &Estimate| {
+        let second = units
+            .second(parameter, p.nominal_scale_m_s2_per_lsb)
+            .map_or_else(String::new, |u| format!("   = {}", value(e, &u)));
+        row(out, name, &format!("{:<31}{second}", value(e, units.parameter(parameter))));
+    };
+    line("bias", Parameter::Bias, &r.bias);
+    if let Some(m) = &r.misalignment {
+        line("misalignment", Parameter::Misalignment, m);
+    }
+    for m in &r.mountings {
+        line(&format!(" mounting {}", shortened(&m.name, 5)), Parameter::Misalignment, &m.misalignment);
+    }
+    line("scale error", Parameter::ScaleError, &r.scale_error);
+    row(out, "scale factor", &value(&r.scale_factor, &units.scale_factor));
+    if let Some([low, high]) = r.bias.prediction_interval {
+        row(out, "next power-up", &format!("bias estimate between {} m/s2", interval(low, high).replace(" to ", " and ")));
+    }
+    if let Some(e) = &p.error_level_lsb {
+        let (after, how) = match e.after_held_out {
+            Some(held_out) => (held_out, "compensated with the other runs' passport"),
+            None => (e.after, "in sample: optimistic"),
+        };
+        let text = format!(
+            "{} -> {} {} rms ({how})",
+            significant(e.before, 2),
+            significant(after, 2),
+            units.reading
+        );
+        row(out, "error level", &text);
+    }
+    let settled: Vec<String> = p.runs.iter().filter_map(|r| r.settled_at.map(|n| n.to_string())).collect();
+    if !settled.is_empty() && settled.len() <= 12 {
+        row(out, "settled", &format!("after {} positions", settled.join(", ")));
+    }
+    if let Some(c) = compensation(p) {
+        row(out, "example", &format!("code {} is {} m/s2", c.example.code, significant(c.example.acceleration_m_s2, 6)));
+    }
+}
+
+fn findings(out: &mut String, p: &Passport) {
+    for group in GROUPS {
+        let of_group: Vec<&Finding> = p.findings.iter().filter(|f| f.severity == group.severity).collect();
+        let bare = bare_sentences(p, group.severity);
+        if of_group.is_empty() && bare.is_empty() {
+            continue;
+        }
+        let _ = writeln!(out, "\n{}", group.heading);
+        for sentence in bare {
+            out.push_str(&wrapped("  ", sentence, 8, WIDTH));
+        }
+        for (f, places) in merged(&of_group) {
+            let place = if places.is_empty() { String::new() } else { format!(" ({})", shortened(&places, 48)) };
+            if group.severity == "note" {
+                out.push_str(&wrapped("  ", &format!("{} {}{place}", f.id, one_line(&f.title)), 8, WIDTH));
+                continue;
+            }
+            out.push_str(&wrapped("  ", &format!("{} {}{place}: {}", f.id, one_line(&f.title), f.observed), 8, WIDTH));
+            out.push_str(&wrapped("        -> ", &as_sentence(&f.todo), 11, WIDTH));
+        }
+    }
+}
+
+/// Findings of one kind with the same remedy (mostly one a run) as one, with all their places.
+fn merged<'p>(findings: &[&'p Finding]) -> Vec<(&'p Finding, String)> {
+    let mut out: Vec<(&Finding, Vec<&str>)> = Vec::new();
+    for f in findings {
+        match out.iter_mut().find(|(g, _)| g.id == f.id && g.todo == f.todo) {
+            Some((_, places)) => places.push(&f.place),
+            None => out.push((f, vec![&f.place])),
+        }
+    }
+    out.into_iter().map(|(f, places)| (f, one_line(&places.join(", ")))).collect()
+}
