@@ -98,7 +98,7 @@ fn numbers(out: &mut String, p: &Passport) {
     line("scale error", Parameter::ScaleError, &r.scale_error);
     row(out, "scale factor", &value(&r.scale_factor, &units.scale_factor));
     if let Some([low, high]) = r.bias.prediction_interval {
-        row(out, "next power-up", &format!("bias estimate between {} m/s2", interval(low, high).replace(" to ", " and ")));
+        row(out, "next power-up", &format!("bias estimate between {} m/s²", interval(low, high).replace(" to ", " and ")));
     }
     if let Some(e) = &p.error_level_lsb {
         let (after, how) = match e.after_held_out {
@@ -118,7 +118,7 @@ fn numbers(out: &mut String, p: &Passport) {
         row(out, "settled", &format!("after {} positions", settled.join(", ")));
     }
     if let Some(c) = compensation(p) {
-        row(out, "example", &format!("code {} is {} m/s2", c.example.code, significant(c.example.acceleration_m_s2, 6)));
+        row(out, "example", &format!("code {} is {} m/s²", c.example.code, significant(c.example.acceleration_m_s2, 6)));
     }
 }
 
