@@ -45,8 +45,15 @@ impl<R: Read> Lines<R> {
     pub(crate) fn next_data(&mut self) -> Result<Option<(u64, &[u8])>, ReadError> {
         loop {
             let Some((from, to)) = self.advance()? else { return Ok(None) };
-            let blank = self.buffer[from..to].iter().all(|b| b.is_ascii_whitespace());
-            if !blank && self.buffer[from] != b'#' {
+            // Nearly every line begins with a digit or a sign: one look decides.
+            let data = match self.buffer[from..to].first() {
+                Some(b'#') | None => false,
+                Some(b) if b.is_ascii_whitespace() => {
+                    self.buffer[from..to].iter().any(|b| !b.is_ascii_whitespace())
+                }
+                Some(_) => true,
+            };
+            if data {
                 return Ok(Some((self.number, &self.buffer[from..to])));
             }
         }

@@ -25,6 +25,12 @@ struct Indices {
     temperature: Option<usize>,
 }
 
+/// Equality of two short texts. The library's `memcmp` took half of the reading time for these few bytes.
+#[inline]
+fn same_text(a: &[u8], b: &[u8]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(x, y)| x == y)
+}
+
 /// The dwell that is being read.
 struct Open {
     angle_text: Vec<u8>,
@@ -75,7 +81,7 @@ pub(super) fn read<R: Read>(
         let angle_text = at.angle.map_or(&b""[..], |i| row.fields.get(i));
         let position_text = at.position.map_or(&b""[..], |i| row.fields.get(i));
         let same = open.as_ref().is_some_and(|d| {
-            d.angle_text == angle_text && d.position_text == position_text
+            same_text(&d.angle_text, angle_text) && same_text(&d.position_text, position_text)
         });
         if !same {
             let dial_deg = match (at.angle, options.fixed_angle_deg) {
@@ -142,8 +148,8 @@ impl Open {
         // Even a sample that is thrown away must be one: a broken file is broken everywhere.
         match &mut self.readings {
             Readings::Codes { histogram, blocks } => {
-                let text = trimmed(row.fields.get(at.reading));
-                let Some(code) = integer(text) else {
+                let field = row.fields.get(at.reading);
+                let Some(code) = integer(field).or_else(|| integer(trimmed(field))) else {
                     return Err(row.wrong(
                         at.reading,
                         "an integer code",

@@ -22,6 +22,14 @@ impl FieldBuffer {
     pub(super) fn split<'a>(&'a mut self, line: &'a [u8], delimiter: u8) -> Fields<'a> {
         self.ends.clear();
         let mut start = 0;
+        if memchr::memchr(b'"', line).is_none() {
+            for end in memchr::memchr_iter(delimiter, line) {
+                self.ends.push((start, end));
+                start = end + 1;
+            }
+            self.ends.push((start, line.len()));
+            return Fields { line, ends: &self.ends };
+        }
         let mut quoted = false;
         for (i, b) in line.iter().enumerate() {
             if *b == delimiter && !quoted {
