@@ -2,7 +2,7 @@
 
 use tumble_runtime::Compensation;
 
-use crate::{ConverterEnds, Code, Quantizer};
+use crate::{Code, ConverterEnds, Quantizer};
 
 /// The coefficients of a passport with what is known about single readings.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -34,7 +34,8 @@ impl Finding {
     /// Stable id, severity and title in one line, for people.
     #[must_use]
     pub fn headline(&self) -> String {
-        let place = if self.place.is_empty() { String::new() } else { format!(" ({})", self.place) };
+        let place =
+            if self.place.is_empty() { String::new() } else { format!(" ({})", self.place) };
         format!("{}{place}", self.kind.title())
     }
 }

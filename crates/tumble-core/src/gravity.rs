@@ -84,7 +84,10 @@ mod tests {
             (60.0, 9.819_176_953_1),
             (90.0, 9.832_184_937_8),
         ] {
-            assert!((Gravity::normal(latitude, 0.0).value_m_s2 - gamma).abs() < 2e-10, "{latitude}");
+            assert!(
+                (Gravity::normal(latitude, 0.0).value_m_s2 - gamma).abs() < 2e-10,
+                "{latitude}"
+            );
         }
     }
 

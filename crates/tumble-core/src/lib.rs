@@ -32,7 +32,9 @@ pub use experiment::{
 pub use finding::{Finding, FindingKind, Severity};
 pub use gravity::{Gravity, GravitySource};
 pub use histogram::CodeHistogram;
-pub use nominal::{NominalScale, NominalScaleError, NominalScaleSource, nominal_scale, nominal_scale_from_means};
+pub use nominal::{
+    NominalScale, NominalScaleError, NominalScaleSource, nominal_scale, nominal_scale_from_means,
+};
 pub use quantizer::{Compensation, ConverterEnds, Quantizer, QuantizerOffset};
 pub use readings::{Readings, ValueMoments, ValueOutOfRange};
 pub use units::{ARCMIN_RAD, Angle, Code, STANDARD_GRAVITY_M_S2};

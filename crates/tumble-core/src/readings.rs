@@ -168,7 +168,8 @@ impl Readings {
                 histogram.bins().filter(|(c, _)| ends.censors(*c)).map(|(_, k)| k).sum()
             }
             Self::Averaged { mean, samples, .. } => {
-                let at = |end: Option<Code>| end.is_some_and(|c| (mean - f64::from(c.0)).abs() < 1.0);
+                let at =
+                    |end: Option<Code>| end.is_some_and(|c| (mean - f64::from(c.0)).abs() < 1.0);
                 if at(ends.min_code) || at(ends.max_code) { *samples } else { 0 }
             }
             Self::Values { .. } => 0,
@@ -186,9 +187,9 @@ impl Readings {
         let white = variance / self.samples().max(1) as f64;
         let blocks = match self {
             Self::Codes { blocks, .. } => blocks.variance_of_mean(),
-            Self::Values { blocks, .. } => {
-                blocks.variance_of_mean().map(|v| v * ValueMoments::RESOLUTION * ValueMoments::RESOLUTION)
-            }
+            Self::Values { blocks, .. } => blocks
+                .variance_of_mean()
+                .map(|v| v * ValueMoments::RESOLUTION * ValueMoments::RESOLUTION),
             Self::Averaged { .. } => None,
         };
         let resolution = match quantizer {

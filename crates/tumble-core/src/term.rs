@@ -75,5 +75,11 @@ pub fn test_term(runs: &[&[WeightedRow]], columns: &[Vec<f64>]) -> Option<TermTe
     let standard_uncertainty_lsb = variance.sqrt();
     let p_value = student_p_value(effect_lsb / standard_uncertainty_lsb, dof)?;
     let peak_lsb = freed.iter().map(|z| (effect_lsb * z).abs()).fold(0.0, f64::max);
-    Some(TermTest { effect_lsb, standard_uncertainty_lsb, degrees_of_freedom: dof, p_value, peak_lsb })
+    Some(TermTest {
+        effect_lsb,
+        standard_uncertainty_lsb,
+        degrees_of_freedom: dof,
+        p_value,
+        peak_lsb,
+    })
 }

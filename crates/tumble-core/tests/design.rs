@@ -40,7 +40,11 @@ fn uncertainties_of_six_plans() {
             assert!((ours / theirs - 1.0).abs() < TOLERANCE, "{name}: {ours} against {theirs}");
         }
         // Printed as whole numbers.
-        assert!((ours[3] - expected[3]).abs() <= 0.5 + TOLERANCE * expected[3], "{name}: {}", ours[3]);
+        assert!(
+            (ours[3] - expected[3]).abs() <= 0.5 + TOLERANCE * expected[3],
+            "{name}: {}",
+            ours[3]
+        );
         assert!((p.correlation_bias_misalignment - expected[4]).abs() < 5.1e-4, "{name}");
     }
 }

@@ -27,20 +27,27 @@ fn a_run_is_unbiased_and_its_uncertainty_is_its_scatter() {
     let n = if long() { 4000 } else { 400 };
     let options = EstimateOptions::default();
     for plan in ["paper", "-65:65:60", "-65:65:12"] {
-        let base = Truth { runs: 1, angles_deg: parse_plan(plan).unwrap(), ..quick(Preset::Paper2) };
+        let base =
+            Truth { runs: 1, angles_deg: parse_plan(plan).unwrap(), ..quick(Preset::Paper2) };
         // Away from code zero, where the sign rule of the exact form is known to be off.
-        let base = Truth { misalignment: Angle::from_rad(0.002), quantizer: tumble_core::Quantizer::Floor, ..base };
+        let base = Truth {
+            misalignment: Angle::from_rad(0.002),
+            quantizer: tumble_core::Quantizer::Floor,
+            ..base
+        };
         let truth = [base.bias_m_s2, base.misalignment.rad(), base.scale_error];
         let mut errors: [Vec<f64>; 3] = Default::default();
         let mut claimed: [Vec<f64>; 3] = Default::default();
         let mut covered = [0usize; 3];
         for seed in 0..n {
-            let a = assess(&experiment(&Truth { seed: seed as u64 + 1, ..base.clone() }), &options).unwrap();
+            let a = assess(&experiment(&Truth { seed: seed as u64 + 1, ..base.clone() }), &options)
+                .unwrap();
             let e = a.runs[0].estimate.as_ref().unwrap();
             for p in Parameter::ALL {
                 let i = p.index();
                 let (v, u) = (e.values[i].unwrap(), e.standard_uncertainty(p).unwrap());
-                let t = tumble_core::stats::student_factor(0.95, e.degrees_of_freedom as f64).unwrap();
+                let t =
+                    tumble_core::stats::student_factor(0.95, e.degrees_of_freedom as f64).unwrap();
                 errors[i].push(v - truth[i]);
                 claimed[i].push(u * u);
                 covered[i] += usize::from((v - truth[i]).abs() <= t * u);
@@ -53,7 +60,11 @@ fn a_run_is_unbiased_and_its_uncertainty_is_its_scatter() {
             assert!(z.abs() < 4.0, "{plan} {}: mean error is {z:.1} standard errors", p.name());
             let ratio = mean(&claimed[i]).unwrap().sqrt() / scatter;
             let tolerance = 4.0 / (2.0 * n as f64).sqrt();
-            assert!((ratio - 1.0).abs() < tolerance, "{plan} {}: claimed/actual {ratio:.3}", p.name());
+            assert!(
+                (ratio - 1.0).abs() < tolerance,
+                "{plan} {}: claimed/actual {ratio:.3}",
+                p.name()
+            );
             let coverage = covered[i] as f64 / n as f64;
             let limit = 4.0 * fraction_se(0.95, n);
             assert!((coverage - 0.95).abs() < limit, "{plan} {}: covers {coverage:.4}", p.name());
@@ -69,9 +80,15 @@ fn intersections_under_cover_and_the_pooled_interval_does_not() {
     for (between, intersection_covers, empty) in [(0.0, 0.79, 0.0), (1.0, 0.43, 0.26)] {
         let c = pooled_coverage(n, between);
         let tolerance = 4.0 * fraction_se(0.5, n) + 0.005;
-        assert!((c.intersection - intersection_covers).abs() < tolerance, "between {between}: {c:?}");
+        assert!(
+            (c.intersection - intersection_covers).abs() < tolerance,
+            "between {between}: {c:?}"
+        );
         assert!((c.pooled - 0.95).abs() < 4.0 * fraction_se(0.95, n), "between {between}: {c:?}");
-        assert!((c.prediction - 0.95).abs() < 4.0 * fraction_se(0.95, n), "between {between}: {c:?}");
+        assert!(
+            (c.prediction - 0.95).abs() < 4.0 * fraction_se(0.95, n),
+            "between {between}: {c:?}"
+        );
         if between > 0.0 {
             assert!((c.empty - empty).abs() < tolerance, "between {between}: {c:?}");
         }
@@ -123,7 +140,12 @@ fn pooled_coverage(n: usize, between: f64) -> Coverage {
         predicted += usize::from(holds(bias.prediction_interval.unwrap(), values[5]));
     }
     let f = |k: usize| k as f64 / n as f64;
-    Coverage { intersection: f(inside), empty: f(empty), pooled: f(pooled_inside), prediction: f(predicted) }
+    Coverage {
+        intersection: f(inside),
+        empty: f(empty),
+        pooled: f(pooled_inside),
+        prediction: f(predicted),
+    }
 }
 
 /// A pair shared by runs must never enter each of them (method section 7a): it carries most of every run's bias,
@@ -151,7 +173,13 @@ fn a_shared_pair_in_every_run_would_ruin_the_coverage() {
         let honest = experiment(&base);
         honest_covers += covers(&honest);
         // The same pair smuggled into every run's positions.
-        let pair = experiment(&Truth { angles_deg: vec![], upright_in_each_run: true, runs: 1, seed: base.seed + 1_000_000, ..base.clone() });
+        let pair = experiment(&Truth {
+            angles_deg: vec![],
+            upright_in_each_run: true,
+            runs: 1,
+            seed: base.seed + 1_000_000,
+            ..base.clone()
+        });
         let mut smuggled = honest.clone();
         for run in &mut smuggled.runs {
             run.positions.splice(0..0, pair.runs[0].positions.iter().cloned());
@@ -160,7 +188,11 @@ fn a_shared_pair_in_every_run_would_ruin_the_coverage() {
         // What the product does with such a pair: it gives the nominal scale, and no run sees it.
         let mut declared = honest.clone();
         let mut p = pair.runs[0].positions.iter().cloned();
-        declared.vertical = Some(tumble_core::VerticalPair { up: p.next().unwrap(), down: p.next().unwrap(), run: None });
+        declared.vertical = Some(tumble_core::VerticalPair {
+            up: p.next().unwrap(),
+            down: p.next().unwrap(),
+            run: None,
+        });
         let with_pair = assess(&declared, &EstimateOptions::default()).unwrap();
         let without = assess(&honest, &EstimateOptions::default()).unwrap();
         for (a, b) in with_pair.runs.iter().zip(&without.runs) {
@@ -187,7 +219,9 @@ fn honest_experiments_are_accepted() {
                 .iter()
                 .filter(|f| f.kind.severity() >= Severity::Warning)
                 // The paper's plan is usable with this warning; five runs of equal scatter may miss each other.
-                .filter(|f| !matches!(f.kind, FindingKind::IllConditioned | FindingKind::EmptyIntersection))
+                .filter(|f| {
+                    !matches!(f.kind, FindingKind::IllConditioned | FindingKind::EmptyIntersection)
+                })
                 .map(|f| format!("seed {seed}: {} {}", f.headline(), f.observed)),
         );
     }
@@ -217,7 +251,8 @@ fn the_exact_form_is_right_for_large_errors_and_the_papers_is_not() {
     let expected = [0.9, 0.05, 0.08];
     for p in Parameter::ALL {
         let i = p.index();
-        let (e, u) = (exact.values[i].unwrap() - expected[i], exact.standard_uncertainty(p).unwrap());
+        let (e, u) =
+            (exact.values[i].unwrap() - expected[i], exact.standard_uncertainty(p).unwrap());
         assert!(e.abs() < 4.0 * u, "exact {}: off by {e}, u = {u}", p.name());
         // −0.0667 m/s², −3.7 mrad, −4.8e-3: method and reference answers.
         let off = paper.values[i].unwrap() - expected[i];

@@ -44,7 +44,8 @@ impl std::error::Error for CertifyError {}
 /// passport too; it says why.
 pub fn certify(folder: &Path, options: &CertifyOptions) -> Result<Passport, CertifyError> {
     let read = read_experiment(folder).map_err(CertifyError::Read)?;
-    let mut assessment = assess(&read.experiment, &options.estimate).map_err(CertifyError::Assess)?;
+    let mut assessment =
+        assess(&read.experiment, &options.estimate).map_err(CertifyError::Assess)?;
     assessment.findings.extend(read.findings.iter().cloned());
     Ok(passport::build(
         &read,

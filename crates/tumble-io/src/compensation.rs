@@ -39,13 +39,22 @@ pub enum CompensationRefused {
 
 impl std::fmt::Display for CompensationRefused {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let first = |list: &[String]| list.first().map(|s| crate::error::visible(s)).unwrap_or_default();
+        let first =
+            |list: &[String]| list.first().map(|s| crate::error::visible(s)).unwrap_or_default();
         match self {
             Self::Rejected { reasons } => {
-                write!(f, "the calibration was rejected and has no coefficients: {}", first(reasons))
+                write!(
+                    f,
+                    "the calibration was rejected and has no coefficients: {}",
+                    first(reasons)
+                )
             }
             Self::Indeterminate { missing } => {
-                write!(f, "the calibration is indeterminate and has no coefficients: {}", first(missing))
+                write!(
+                    f,
+                    "the calibration is indeterminate and has no coefficients: {}",
+                    first(missing)
+                )
             }
             Self::Unproven => write!(
                 f,

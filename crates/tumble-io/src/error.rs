@@ -48,11 +48,8 @@ impl fmt::Display for Place {
 /// Text from outside, safe to print on a terminal: control characters become visible, long text is cut.
 pub(crate) fn visible(text: &str) -> String {
     const LONGEST: usize = 80;
-    let mut out: String = text
-        .chars()
-        .take(LONGEST)
-        .map(|c| if c.is_control() { '\u{fffd}' } else { c })
-        .collect();
+    let mut out: String =
+        text.chars().take(LONGEST).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
     if text.chars().nth(LONGEST).is_some() {
         out.push('…');
     }

@@ -77,10 +77,8 @@ pub fn read_experiment(folder: &Path) -> Result<ExperimentFolder, ReadError> {
     let output = output(&file.output)?;
     let bench = bench(&file.bench)?;
     let names = run_names(&file.run)?;
-    let mut inputs = vec![FileDigest {
-        file: EXPERIMENT_FILE.into(),
-        sha256: crate::digest::sha256(&bytes),
-    }];
+    let mut inputs =
+        vec![FileDigest { file: EXPERIMENT_FILE.into(), sha256: crate::digest::sha256(&bytes) }];
     let mut findings = Vec::new();
 
     let reader = Reader { folder, output: &output, bench: &bench, table: &file.bench };
@@ -141,10 +139,7 @@ fn value(key: &str, given: impl ToString, expected: &str) -> ReadError {
 }
 
 fn missing(key: &'static str, example: &'static str) -> ReadError {
-    ReadError {
-        place: Place::file(EXPERIMENT_FILE),
-        problem: Problem::MissingKey { key, example },
-    }
+    ReadError { place: Place::file(EXPERIMENT_FILE), problem: Problem::MissingKey { key, example } }
 }
 
 /// A number that must be finite and at least (or more than) zero.
@@ -177,7 +172,11 @@ fn output(table: &OutputTable) -> Result<Output, ReadError> {
         (_, None) => "LSB".into(),
         (_, Some(unit)) if unit == "LSB" => "LSB".into(),
         (_, Some(unit)) => {
-            return Err(value("[output] unit", unit, "it only with quantizer = \"none\"; codes are in LSB"));
+            return Err(value(
+                "[output] unit",
+                unit,
+                "it only with quantizer = \"none\"; codes are in LSB",
+            ));
         }
     };
     if let (Some(lo), Some(hi)) = (table.min_code, table.max_code)
@@ -189,7 +188,11 @@ fn output(table: &OutputTable) -> Result<Output, ReadError> {
     Ok(Output {
         quantizer,
         unit,
-        nominal_scale_m_s2_per_lsb: positive("[output] nominal_scale", table.nominal_scale, nominal)?,
+        nominal_scale_m_s2_per_lsb: positive(
+            "[output] nominal_scale",
+            table.nominal_scale,
+            nominal,
+        )?,
         rate_hz: positive("[output] rate_hz", table.rate_hz, "samples per second")?,
         ends: ConverterEnds {
             min_code: table.min_code.map(Code),
@@ -237,13 +240,21 @@ fn bench(table: &BenchTable) -> Result<Bench, ReadError> {
             ));
         }
         (Some(_), _, _) => {
-            return Err(value("[bench] gravity", "given twice", "gravity, or latitude_deg and height_m, not both"));
+            return Err(value(
+                "[bench] gravity",
+                "given twice",
+                "gravity, or latitude_deg and height_m, not both",
+            ));
         }
     };
     let range = match table.angle_range_deg {
         Some([lo, hi]) if lo < hi => Some((Angle::from_deg(lo), Angle::from_deg(hi))),
         Some([lo, hi]) => {
-            return Err(value("[bench] angle_range_deg", format!("[{lo}, {hi}]"), "[lowest, highest] in degrees"));
+            return Err(value(
+                "[bench] angle_range_deg",
+                format!("[{lo}, {hi}]"),
+                "[lowest, highest] in degrees",
+            ));
         }
         None => None,
     };
@@ -274,7 +285,9 @@ fn targets(file: &ExperimentFile) -> Result<Targets, ReadError> {
     let default = Targets::default();
     let expected = "a positive expanded uncertainty";
     let spec = &file.spec;
-    let or = |key, given, default| Ok::<_, ReadError>(positive(key, given, expected)?.unwrap_or(default));
+    let or = |key, given, default| {
+        Ok::<_, ReadError>(positive(key, given, expected)?.unwrap_or(default))
+    };
     Ok(Targets {
         bias_m_s2: or("[spec] target_bias_m_s2", spec.target_bias_m_s2, default.bias_m_s2)?,
         misalignment_rad: or(
@@ -331,7 +344,8 @@ impl Reader<'_> {
             problem: Problem::OutsideFolder { path: file.to_owned() },
         };
         let relative = Path::new(file);
-        let plain = relative.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
+        let plain =
+            relative.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
         if !plain || file.is_empty() || file.contains('\\') {
             return Err(outside());
         }
@@ -344,7 +358,8 @@ impl Reader<'_> {
 
     /// Runs in parallel, combined in the order of experiment.toml.
     fn runs(&self, tables: &[RunTable], names: &[String]) -> Vec<ReadRun> {
-        let workers = thread::available_parallelism().map_or(1, |n| n.get()).min(tables.len().max(1));
+        let workers =
+            thread::available_parallelism().map_or(1, |n| n.get()).min(tables.len().max(1));
         let mut results: Vec<Option<ReadRun>> = tables.iter().map(|_| None).collect();
         thread::scope(|scope| {
             let handles: Vec<_> = (0..workers)
@@ -373,7 +388,9 @@ impl Reader<'_> {
         let mut findings = Vec::new();
         let files: Vec<(&str, Option<f64>)> = match (&table.file, &table.files[..]) {
             (Some(file), []) => vec![(file, None)],
-            (None, [_, ..]) => table.files.iter().map(|f| (f.file.as_str(), Some(f.angle_deg))).collect(),
+            (None, [_, ..]) => {
+                table.files.iter().map(|f| (f.file.as_str(), Some(f.angle_deg))).collect()
+            }
             (None, []) => return Err(missing("[[run]] file", "file = \"run-1.csv\"")),
             (Some(_), _) => {
                 return Err(value("[[run]] files", "given beside file", "one of the two"));
@@ -433,7 +450,12 @@ impl Reader<'_> {
             seat: self.bench.seat(angle),
             readings: dwell.readings,
             temperature_degc: dwell.temperature_degc.or(table.temperature_degc),
-            place: format!("{file}, line {}, dwell {} ({}°)", dwell.line, index + 1, dwell.dial_deg),
+            place: format!(
+                "{file}, line {}, dwell {} ({}°)",
+                dwell.line,
+                index + 1,
+                dwell.dial_deg
+            ),
         }
     }
 
@@ -459,7 +481,13 @@ impl Reader<'_> {
                     scale.down_samples,
                     scale.down_std_code,
                 ),
-                _ => ("[scale] up", &scale.up, scale.up_mean_code, scale.up_samples, scale.up_std_code),
+                _ => (
+                    "[scale] up",
+                    &scale.up,
+                    scale.up_mean_code,
+                    scale.up_samples,
+                    scale.up_std_code,
+                ),
             };
             let (readings, temperature_degc, place) = match (file, mean) {
                 (Some(file), None) => {
@@ -477,11 +505,15 @@ impl Reader<'_> {
                     }
                 }
                 (None, Some(mean)) if mean.is_finite() => {
-                    let readings = Readings::Averaged { mean, samples: samples.unwrap_or(1).max(1), std };
+                    let readings =
+                        Readings::Averaged { mean, samples: samples.unwrap_or(1).max(1), std };
                     (readings, None, key.to_owned())
                 }
                 (None, None) => {
-                    return Err(missing("[scale] up and down", "up = \"up.csv\" and down = \"down.csv\", or up_mean_code and down_mean_code"));
+                    return Err(missing(
+                        "[scale] up and down",
+                        "up = \"up.csv\" and down = \"down.csv\", or up_mean_code and down_mean_code",
+                    ));
                 }
                 (_, Some(mean)) => return Err(value(key, mean, "a file or a mean code, not both")),
             };
@@ -498,6 +530,7 @@ fn ignored_columns(file: &str, columns: &[String]) -> Finding {
         place: file.to_owned(),
         observed: columns.join(", "),
         limit: "angle_deg, code, t_s, temperature_degc, position".into(),
-        remedy: "if one of them holds something that matters, name it in `columns` of its [[run]]".into(),
+        remedy: "if one of them holds something that matters, name it in `columns` of its [[run]]"
+            .into(),
     }
 }

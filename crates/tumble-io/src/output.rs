@@ -126,7 +126,8 @@ impl OutputFolder {
             Ok(_) => {}
         }
         let mut there = Vec::new();
-        list(folder, "", &mut there).map_err(|source| OutputError::Io { path: folder.to_path_buf(), source })?;
+        list(folder, "", &mut there)
+            .map_err(|source| OutputError::Io { path: folder.to_path_buf(), source })?;
         // An empty folder is a place prepared for the result.
         if there.is_empty() {
             let removed = fs::remove_dir(folder);
@@ -135,15 +136,20 @@ impl OutputFolder {
                 .map_err(|source| OutputError::Io { path: folder.to_path_buf(), source });
         }
         let foreign = there.iter().find(|f| !self.files.contains_key(*f)).cloned();
-        let differs = self.files.iter().find_map(|(name, bytes)| match fs::read(folder.join(name)) {
-            Ok(old) if old == *bytes => None,
-            _ => Some(name.clone()),
-        });
+        let differs =
+            self.files.iter().find_map(|(name, bytes)| match fs::read(folder.join(name)) {
+                Ok(old) if old == *bytes => None,
+                _ => Some(name.clone()),
+            });
         Ok(differs.or(foreign).map_or(Difference::None, Difference::At))
     }
 
     /// Writes all files into a new folder beside the target.
-    fn write_files(&self, folder: &Path, interrupted: &dyn Fn() -> bool) -> Result<PathBuf, OutputError> {
+    fn write_files(
+        &self,
+        folder: &Path,
+        interrupted: &dyn Fn() -> bool,
+    ) -> Result<PathBuf, OutputError> {
         let aside = beside(folder, &format!("{}.tumble-new", std::process::id()));
         let write = |path: &Path, bytes: &[u8]| {
             if let Some(parent) = path.parent() {

@@ -6,7 +6,9 @@ use std::path::Path;
 
 use flate2::{Compression, GzBuilder};
 use tumble_core::Quantizer;
-use tumble_core::simulate::{SimulatedPosition, SimulatedRun, Truth, TruthError, simulate_run, simulate_vertical};
+use tumble_core::simulate::{
+    SimulatedPosition, SimulatedRun, Truth, TruthError, simulate_run, simulate_vertical,
+};
 
 use crate::output::{Existing, OutputError, OutputFolder, Written};
 use crate::passport::quantizer_name;
@@ -65,7 +67,11 @@ pub fn write_simulation(
     let mut output = OutputFolder::default();
     let ending = if options.gzip { "csv.gz" } else { "csv" };
     let mut add = |name: String, text: String| {
-        let bytes = if options.gzip { packed(&text).map_err(SimulationError::Pack)? } else { text.into_bytes() };
+        let bytes = if options.gzip {
+            packed(&text).map_err(SimulationError::Pack)?
+        } else {
+            text.into_bytes()
+        };
         output.add(name, bytes);
         Ok::<(), SimulationError>(())
     };
@@ -81,7 +87,11 @@ pub fn write_simulation(
         let minute = Truth { dwell_s: 60.0, ..truth.clone() };
         let mut pair = simulate_vertical(&minute).positions.into_iter();
         for name in ["up", "down"] {
-            let positions = pair.next().into_iter().map(|p| SimulatedPosition { temperature_degc: None, ..p }).collect();
+            let positions = pair
+                .next()
+                .into_iter()
+                .map(|p| SimulatedPosition { temperature_degc: None, ..p })
+                .collect();
             let text = reading_only(truth, &SimulatedRun { positions, bias_m_s2: 0.0 });
             add(format!("{name}.{ending}"), text)?;
         }
@@ -212,7 +222,8 @@ fn truth_text(truth: &Truth) -> String {
     let _ = writeln!(t, "quantizer = \"{}\"", quantizer_name(truth.quantizer));
     let _ = writeln!(t, "runs = {}\nseed = {}", truth.runs, truth.seed);
     let _ = writeln!(t, "angles_deg = {:?}", truth.angles_deg);
-    let biases: Vec<f64> = (0..truth.runs).map(|r| tumble_core::simulate::run_bias_m_s2(truth, r)).collect();
+    let biases: Vec<f64> =
+        (0..truth.runs).map(|r| tumble_core::simulate::run_bias_m_s2(truth, r)).collect();
     let _ = writeln!(t, "run_bias_m_s2 = {biases:?}");
     t
 }

@@ -27,7 +27,10 @@ impl Source {
         let fail = |problem| ReadError { place: Place::file(shown_as), problem };
         let file = File::open(path).map_err(|e| fail(Problem::Io(e)))?;
         if file.metadata().map_err(|e| fail(Problem::Io(e)))?.is_dir() {
-            return Err(fail(Problem::Format { seen: "a folder, not a file", remedy: "name a CSV file" }));
+            return Err(fail(Problem::Format {
+                seen: "a folder, not a file",
+                remedy: "name a CSV file",
+            }));
         }
         let mut reader = DigestingReader::new(file);
         let mut head = vec![0u8; 4];
@@ -58,10 +61,9 @@ impl Source {
                 seen: "a Parquet file",
                 remedy: "convert it to CSV; Parquet is not read yet",
             })),
-            [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => Err(fail(Problem::Format {
-                seen: "UTF-16 text",
-                remedy: "save the file as UTF-8",
-            })),
+            [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => {
+                Err(fail(Problem::Format { seen: "UTF-16 text", remedy: "save the file as UTF-8" }))
+            }
             _ => Ok(Self::Plain(rewound)),
         }
     }
@@ -91,7 +93,9 @@ impl Source {
     /// An error of reading as a problem of the input.
     pub(crate) fn problem(e: io::Error) -> Problem {
         match e.get_ref() {
-            Some(inner) if inner.is::<UnpackedLimit>() => Problem::TooLarge { limit: UNPACKED_LIMIT },
+            Some(inner) if inner.is::<UnpackedLimit>() => {
+                Problem::TooLarge { limit: UNPACKED_LIMIT }
+            }
             _ => Problem::Io(e),
         }
     }
@@ -103,7 +107,8 @@ impl Read for Source {
             Self::Plain(chain) => chain.read(buffer),
             Self::Gzip { decoder, left } => {
                 let n = decoder.read(buffer)?;
-                *left = left.checked_sub(n as u64).ok_or_else(|| io::Error::other(UnpackedLimit))?;
+                *left =
+                    left.checked_sub(n as u64).ok_or_else(|| io::Error::other(UnpackedLimit))?;
                 Ok(n)
             }
         }

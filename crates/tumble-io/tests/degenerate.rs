@@ -15,7 +15,10 @@ impl Noise {
     fn next(&mut self) -> f64 {
         (0..12)
             .map(|_| {
-                self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                self.0 = self
+                    .0
+                    .wrapping_mul(6_364_136_223_846_793_005)
+                    .wrapping_add(1_442_695_040_888_963_407);
                 (self.0 >> 33) as f64 / f64::from(1u32 << 31)
             })
             .sum::<f64>()
@@ -52,7 +55,13 @@ fn steps(from: f64, to: f64, n: usize) -> Vec<f64> {
 }
 
 impl Case {
-    fn new(name: &'static str, angles: Vec<f64>, verdict: &'static str, finding: &'static str, cure: &'static str) -> Self {
+    fn new(
+        name: &'static str,
+        angles: Vec<f64>,
+        verdict: &'static str,
+        finding: &'static str,
+        cure: &'static str,
+    ) -> Self {
         Self {
             name,
             angles,
@@ -84,7 +93,11 @@ impl Case {
             let mut csv = String::from("angle_deg,mean_code,samples,std_code\n");
             for (i, angle) in self.angles.iter().enumerate() {
                 let mean = (self.code)(*angle, i) + self.scatter * noise.next();
-                let _ = writeln!(csv, "{angle},{mean:.6},1500,{}", if self.scatter > 0.0 { "1.25" } else { "0" });
+                let _ = writeln!(
+                    csv,
+                    "{angle},{mean:.6},1500,{}",
+                    if self.scatter > 0.0 { "1.25" } else { "0" }
+                );
             }
             std::fs::write(dir.path().join(format!("run-{run}.csv")), csv).unwrap();
         }
@@ -116,27 +129,97 @@ fn cases() -> Vec<Case> {
         Case::new("±10°", steps(-10.0, 10.0, 60), "indeterminate", "T0204", "whole range"),
         Case::new("±5°", steps(-5.0, 5.0, 60), "indeterminate", "T0204", "whole range"),
         Case::new("9…11°", steps(9.0, 11.0, 60), "indeterminate", "T0204", "whole range"),
-        Case::new("40…50°, narrow and one-sided", steps(40.0, 50.0, 60), "indeterminate", "T0204", "on both sides"),
-        Case::new("0…5°, narrow and one-sided", steps(0.0, 5.0, 60), "indeterminate", "T0204", "whole range"),
-        Case::new("ten positions within 20°", steps(0.0, 20.0, 10), "indeterminate", "T0204", "whole range"),
+        Case::new(
+            "40…50°, narrow and one-sided",
+            steps(40.0, 50.0, 60),
+            "indeterminate",
+            "T0204",
+            "on both sides",
+        ),
+        Case::new(
+            "0…5°, narrow and one-sided",
+            steps(0.0, 5.0, 60),
+            "indeterminate",
+            "T0204",
+            "whole range",
+        ),
+        Case::new(
+            "ten positions within 20°",
+            steps(0.0, 20.0, 10),
+            "indeterminate",
+            "T0204",
+            "whole range",
+        ),
         Case::new("one angle", vec![20.0; 60], "indeterminate", "T0201", "three or more"),
         Case::new("one position", vec![20.0], "indeterminate", "T0201", "three or more"),
-        Case::new("two angles", [vec![-30.0; 30], vec![30.0; 30]].concat(), "indeterminate", "T0201", "both sides"),
+        Case::new(
+            "two angles",
+            [vec![-30.0; 30], vec![30.0; 30]].concat(),
+            "indeterminate",
+            "T0201",
+            "both sides",
+        ),
         Case::new("two positions", vec![-30.0, 30.0], "indeterminate", "T0201", "both sides"),
-        Case::new("three without repeats", vec![-60.0, 0.0, 60.0], "indeterminate", "T0202", "at least twice"),
-        Case::new("up and down only, in the run file", vec![90.0, -90.0], "indeterminate", "T0201", "both sides of 0°"),
-        Case { scatter: 0.0, ..Case::new("identical positions", vec![20.0; 60], "rejected", "T0115", "measure the run again") },
-        Case { scatter: 0.0, ..Case::new("all codes equal", wide(), "rejected", "T0107", "fresh samples") }.code(|_, _| 17.0),
-        Case { extra_output: "min_code = -2048\nmax_code = 2047", scatter: 0.0, ..Case::new("saturated throughout", wide(), "rejected", "T0108", "lower the gain") }
-            .code(|_, _| 2047.0),
-        Case { extra_output: "min_code = -100\nmax_code = 100", ..Case::new("saturated but for a narrow arc", wide(), "indeterminate", "T0204", "") }
-            .code(|d, i| healthy(d, i).clamp(-100.0, 100.0)),
-        Case { nominal_scale: K0 / 9.806_65, ..Case::new("scale given in g", wide(), "rejected", "T0102", "9.80665") },
-        Case { nominal_scale: K0 * 9.806_65, ..Case::new("scale multiplied by g twice", wide(), "rejected", "T0102", "m/s² per LSB") },
-        Case { nominal_scale: K0 * 1000.0, ..Case::new("scale in mm/s²", wide(), "rejected", "T0103", "nominal_scale") },
-        Case { nominal_scale: K0 * 4.0, ..Case::new("another range of the sensor", wide(), "rejected", "T0103", "range") },
-        Case::new("sign reversed", wide(), "rejected", "T0101", "angle_sign = -1").code(|d, i| healthy(-d, i)),
-        Case::new("sign reversed, paper's plan", paper(), "rejected", "T0101", "angle_sign = -1").code(|d, i| healthy(-d, i)),
+        Case::new(
+            "three without repeats",
+            vec![-60.0, 0.0, 60.0],
+            "indeterminate",
+            "T0202",
+            "at least twice",
+        ),
+        Case::new(
+            "up and down only, in the run file",
+            vec![90.0, -90.0],
+            "indeterminate",
+            "T0201",
+            "both sides of 0°",
+        ),
+        Case {
+            scatter: 0.0,
+            ..Case::new(
+                "identical positions",
+                vec![20.0; 60],
+                "rejected",
+                "T0115",
+                "measure the run again",
+            )
+        },
+        Case {
+            scatter: 0.0,
+            ..Case::new("all codes equal", wide(), "rejected", "T0107", "fresh samples")
+        }
+        .code(|_, _| 17.0),
+        Case {
+            extra_output: "min_code = -2048\nmax_code = 2047",
+            scatter: 0.0,
+            ..Case::new("saturated throughout", wide(), "rejected", "T0108", "lower the gain")
+        }
+        .code(|_, _| 2047.0),
+        Case {
+            extra_output: "min_code = -100\nmax_code = 100",
+            ..Case::new("saturated but for a narrow arc", wide(), "indeterminate", "T0204", "")
+        }
+        .code(|d, i| healthy(d, i).clamp(-100.0, 100.0)),
+        Case {
+            nominal_scale: K0 / 9.806_65,
+            ..Case::new("scale given in g", wide(), "rejected", "T0102", "9.80665")
+        },
+        Case {
+            nominal_scale: K0 * 9.806_65,
+            ..Case::new("scale multiplied by g twice", wide(), "rejected", "T0102", "m/s² per LSB")
+        },
+        Case {
+            nominal_scale: K0 * 1000.0,
+            ..Case::new("scale in mm/s²", wide(), "rejected", "T0103", "nominal_scale")
+        },
+        Case {
+            nominal_scale: K0 * 4.0,
+            ..Case::new("another range of the sensor", wide(), "rejected", "T0103", "range")
+        },
+        Case::new("sign reversed", wide(), "rejected", "T0101", "angle_sign = -1")
+            .code(|d, i| healthy(-d, i)),
+        Case::new("sign reversed, paper's plan", paper(), "rejected", "T0101", "angle_sign = -1")
+            .code(|d, i| healthy(-d, i)),
         Case::new("strongly cubic", wide(), "rejected", "T0112", "K3")
             .code(|d, i| healthy(d, i) + 30.0 * d.to_radians().sin().powi(3)),
         Case::new("strongly quadratic", wide(), "rejected", "T0111", "K2")
@@ -145,15 +228,38 @@ fn cases() -> Vec<Case> {
             .code(|d, i| healthy(d, i) + 0.005 * G * d.to_radians().sin().powi(2) / K0),
         Case::new("scale factor 5 % larger above zero", wide(), "rejected", "T0111", "")
             .code(|d, i| healthy(d, i) * if d > 0.0 { 1.05 } else { 1.0 }),
-        Case::new("angle column is a counter", (0..60).map(f64::from).collect(), "rejected", "T0105", "counter")
-            .code(|d, i| healthy(d - 30.0, i)),
-        Case::new("counter over steps of 2°", (0..60).map(f64::from).collect(), "rejected", "T0112", "")
-            .code(|d, i| healthy(2.0 * d - 60.0, i)),
-        Case::new("angles in radians", steps(-1.047, 1.047, 60), "rejected", "T0110", "degrees").code(|d, i| healthy(d.to_degrees(), i)),
-        Case::new("angles shuffled", wide(), "rejected", "T0110", "in the order").code(|_, i| healthy(((i * 37) % 60) as f64 * 2.0 - 60.0, i)),
-        Case::new("codes without relation to the angle", wide(), "rejected", "T0110", "angles").code(|_, i| ((i * 7919) % 2000) as f64 - 1000.0),
-        Case::new("magnitudes only", wide(), "rejected", "T0110", "").code(|d, i| healthy(d, i).abs()),
-        Case::new("offset-binary codes taken for signed", wide(), "rejected", "T0104", "signed or unsigned").code(|d, i| healthy(d, i) + 2048.0),
+        Case::new(
+            "angle column is a counter",
+            (0..60).map(f64::from).collect(),
+            "rejected",
+            "T0105",
+            "counter",
+        )
+        .code(|d, i| healthy(d - 30.0, i)),
+        Case::new(
+            "counter over steps of 2°",
+            (0..60).map(f64::from).collect(),
+            "rejected",
+            "T0112",
+            "",
+        )
+        .code(|d, i| healthy(2.0 * d - 60.0, i)),
+        Case::new("angles in radians", steps(-1.047, 1.047, 60), "rejected", "T0110", "degrees")
+            .code(|d, i| healthy(d.to_degrees(), i)),
+        Case::new("angles shuffled", wide(), "rejected", "T0110", "in the order")
+            .code(|_, i| healthy(((i * 37) % 60) as f64 * 2.0 - 60.0, i)),
+        Case::new("codes without relation to the angle", wide(), "rejected", "T0110", "angles")
+            .code(|_, i| ((i * 7919) % 2000) as f64 - 1000.0),
+        Case::new("magnitudes only", wide(), "rejected", "T0110", "")
+            .code(|d, i| healthy(d, i).abs()),
+        Case::new(
+            "offset-binary codes taken for signed",
+            wide(),
+            "rejected",
+            "T0104",
+            "signed or unsigned",
+        )
+        .code(|d, i| healthy(d, i) + 2048.0),
         Case::new("converter wraps round", wide(), "rejected", "T0110", "").code(|d, i| {
             let n = healthy(d, i);
             if n > 512.0 { n - 1024.0 } else { n }
@@ -226,7 +332,10 @@ fn the_papers_plan_is_usable_with_a_warning() {
     let p = Case { runs: 5, ..case }.certify();
     assert_eq!(p.verdict, "accepted", "{:?} {:?}", p.reasons, p.missing);
     let warning = p.findings.iter().find(|f| f.id == "T0205").unwrap();
-    assert!(warning.observed.contains("−0.999") || warning.observed.contains("-0.999"), "{warning:?}");
+    assert!(
+        warning.observed.contains("−0.999") || warning.observed.contains("-0.999"),
+        "{warning:?}"
+    );
     assert!(p.result.is_some() && p.compensation.is_some());
 }
 

@@ -47,7 +47,9 @@ fn every_answer_to_nine_digits() {
             let ours: Vec<&Estimate> =
                 [&r.estimates.bias, &r.estimates.misalignment, &r.estimates.scale_error]
                     .into_iter()
-                    .map(|e| e.as_ref().unwrap_or_else(|| panic!("{set} {name}: no estimate; {:?}", r)))
+                    .map(|e| {
+                        e.as_ref().unwrap_or_else(|| panic!("{set} {name}: no estimate; {:?}", r))
+                    })
                     .collect();
             let what = |field: &str| format!("{set} {name} {field}");
             for (i, theirs) in numbers(&expected["estimates"]).iter().enumerate() {
@@ -94,11 +96,14 @@ fn nominal_scale_of_all_quantizers() {
     let answers = answers();
     let n = &answers["nominal-scale"];
     let get = |k: &str| n[k].as_f64().unwrap();
-    for (name, q) in
-        [("truncate", Quantizer::Truncate), ("round", Quantizer::Round), ("floor", Quantizer::Floor)]
-    {
+    for (name, q) in [
+        ("truncate", Quantizer::Truncate),
+        ("round", Quantizer::Round),
+        ("floor", Quantizer::Floor),
+    ] {
         let ours =
-            nominal_scale_from_means(get("up_mean_code"), get("down_mean_code"), q, get("gravity")).unwrap();
+            nominal_scale_from_means(get("up_mean_code"), get("down_mean_code"), q, get("gravity"))
+                .unwrap();
         close(name, ours, get(name));
     }
 }

@@ -38,7 +38,12 @@ impl Rounded {
 fn power(v: f64, digits: i32) -> Option<i32> {
     let digits = usize::try_from(digits - 1).unwrap_or(0);
     // The formatter rounds across decades (0.0996 is 1.0e-1) and is exact.
-    format!("{:.digits$e}", v.abs()).rsplit_once('e')?.1.parse().ok().filter(|_| v.is_finite() && v != 0.0)
+    format!("{:.digits$e}", v.abs())
+        .rsplit_once('e')?
+        .1
+        .parse()
+        .ok()
+        .filter(|_| v.is_finite() && v != 0.0)
 }
 
 /// Rounds all `values` to the place of the second significant digit of `u`. `None` without a usable `u`.
@@ -49,8 +54,12 @@ pub(crate) fn rounded_to(values: &[f64], u: f64) -> Option<Rounded> {
     if top - place >= DOUBLE_DIGITS || values.iter().any(|v| !v.is_finite()) {
         return None;
     }
-    let exponent = if place < -MOST_DECIMALS || top >= LARGEST_POWER { top.div_euclid(3) * 3 } else { 0 };
-    Some(Rounded { texts: values.iter().map(|v| at_place(*v, place, exponent)).collect(), exponent })
+    let exponent =
+        if place < -MOST_DECIMALS || top >= LARGEST_POWER { top.div_euclid(3) * 3 } else { 0 };
+    Some(Rounded {
+        texts: values.iter().map(|v| at_place(*v, place, exponent)).collect(),
+        exponent,
+    })
 }
 
 /// `v` over ten to the `exponent`, rounded to ten to the `place`.
@@ -61,7 +70,10 @@ fn at_place(v: f64, place: i32, exponent: i32) -> String {
     if digits < 0 {
         // Below the place: 0 or one unit of it.
         let one = v.abs() >= 0.5 * 10f64.powi(place);
-        return fixed(if one { v.signum() * 10f64.powi(place - exponent) } else { 0.0 }, exponent - place);
+        return fixed(
+            if one { v.signum() * 10f64.powi(place - exponent) } else { 0.0 },
+            exponent - place,
+        );
     }
     let kept = format!("{v:.*e}", usize::try_from(digits).unwrap_or(0));
     let (mantissa, power) = kept.rsplit_once('e').unwrap_or((&kept, "0"));

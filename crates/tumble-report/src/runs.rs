@@ -62,7 +62,13 @@ pub(crate) fn panels<'p>(passport: &'p Passport, units: &Units) -> Vec<Panel<'p>
                 None => parameter.name().to_owned(),
             };
             let result = pooled(passport, parameter, mounting);
-            out.push(Panel { parameter, title, unit: units.parameter(parameter).clone(), result, runs });
+            out.push(Panel {
+                parameter,
+                title,
+                unit: units.parameter(parameter).clone(),
+                result,
+                runs,
+            });
         }
     }
     out
@@ -79,16 +85,18 @@ pub(crate) fn mountings(passport: &Passport) -> Vec<&str> {
     seen
 }
 
-fn pooled<'p>(passport: &'p Passport, parameter: Parameter, mounting: Option<&str>) -> Option<&'p Estimate> {
+fn pooled<'p>(
+    passport: &'p Passport,
+    parameter: Parameter,
+    mounting: Option<&str>,
+) -> Option<&'p Estimate> {
     let result = standing::result(passport)?;
     match parameter {
         Parameter::Bias => Some(&result.bias),
         Parameter::ScaleError => Some(&result.scale_error),
         Parameter::Misalignment => match mounting {
             None => result.misalignment.as_ref(),
-            Some(name) => {
-                result.mountings.iter().find(|m| m.name == name).map(|m| &m.misalignment)
-            }
+            Some(name) => result.mountings.iter().find(|m| m.name == name).map(|m| &m.misalignment),
         },
     }
 }

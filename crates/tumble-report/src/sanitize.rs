@@ -57,7 +57,9 @@ fn visible(c: char) -> char {
     match c {
         '\n' => c,
         // The block of control pictures has the order of ASCII.
-        '\0'..='\u{1f}' => char::from_u32(0x2400 + u32::from(c)).unwrap_or(char::REPLACEMENT_CHARACTER),
+        '\0'..='\u{1f}' => {
+            char::from_u32(0x2400 + u32::from(c)).unwrap_or(char::REPLACEMENT_CHARACTER)
+        }
         '\u{7f}' => '\u{2421}',
         // C1 controls act like ESC sequences in some terminals.
         '\u{80}'..='\u{9f}' => char::REPLACEMENT_CHARACTER,

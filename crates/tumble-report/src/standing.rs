@@ -7,7 +7,9 @@ use tumble_io::passport::{Compensation, Passport, ResultSection};
 pub(crate) enum Standing {
     Accepted,
     /// Indeterminate with a result: for want of runs alone.
-    Unproven { one_run: bool },
+    Unproven {
+        one_run: bool,
+    },
     /// Indeterminate without a result.
     Incomplete,
     Rejected,

@@ -59,13 +59,22 @@ fn subject(out: &mut String, p: &Passport) {
     };
     let mounted = mountings(p).len();
     let mounted = if mounted > 1 { format!(", {mounted} mountings") } else { String::new() };
-    row(out, "measured", &format!("{}{each}{mounted}; method {}", counted(p.runs.len(), "run"), shortened(&p.method, 12)));
+    row(
+        out,
+        "measured",
+        &format!(
+            "{}{each}{mounted}; method {}",
+            counted(p.runs.len(), "run"),
+            shortened(&p.method, 12)
+        ),
+    );
 }
 
 /// The level of confidence in per cent: `95 %`.
 pub(crate) fn level(p: &Passport) -> String {
     let text = significant(p.options.level * 100.0, 5);
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    let text =
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
     format!("{text} %")
 }
 
@@ -93,12 +102,20 @@ fn numbers(out: &mut String, p: &Passport) {
         line("misalignment", Parameter::Misalignment, m);
     }
     for m in &r.mountings {
-        line(&format!(" mounting {}", shortened(&m.name, 5)), Parameter::Misalignment, &m.misalignment);
+        line(
+            &format!(" mounting {}", shortened(&m.name, 5)),
+            Parameter::Misalignment,
+            &m.misalignment,
+        );
     }
     line("scale error", Parameter::ScaleError, &r.scale_error);
     row(out, "scale factor", &value(&r.scale_factor, &units.scale_factor));
     if let Some([low, high]) = r.bias.prediction_interval {
-        row(out, "next power-up", &format!("bias estimate between {} m/s²", interval(low, high).replace(" to ", " and ")));
+        row(
+            out,
+            "next power-up",
+            &format!("bias estimate between {} m/s²", interval(low, high).replace(" to ", " and ")),
+        );
     }
     if let Some(e) = &p.error_level_lsb {
         let (after, how) = match e.after_held_out {
@@ -113,18 +130,28 @@ fn numbers(out: &mut String, p: &Passport) {
         );
         row(out, "error level", &text);
     }
-    let settled: Vec<String> = p.runs.iter().filter_map(|r| r.settled_at.map(|n| n.to_string())).collect();
+    let settled: Vec<String> =
+        p.runs.iter().filter_map(|r| r.settled_at.map(|n| n.to_string())).collect();
     if !settled.is_empty() && settled.len() <= 12 {
         row(out, "settled", &format!("after {} positions", settled.join(", ")));
     }
     if let Some(c) = compensation(p) {
-        row(out, "example", &format!("code {} is {} m/s²", c.example.code, significant(c.example.acceleration_m_s2, 6)));
+        row(
+            out,
+            "example",
+            &format!(
+                "code {} is {} m/s²",
+                c.example.code,
+                significant(c.example.acceleration_m_s2, 6)
+            ),
+        );
     }
 }
 
 fn findings(out: &mut String, p: &Passport) {
     for group in GROUPS {
-        let of_group: Vec<&Finding> = p.findings.iter().filter(|f| f.severity == group.severity).collect();
+        let of_group: Vec<&Finding> =
+            p.findings.iter().filter(|f| f.severity == group.severity).collect();
         let bare = bare_sentences(p, group.severity);
         if of_group.is_empty() && bare.is_empty() {
             continue;
@@ -134,12 +161,26 @@ fn findings(out: &mut String, p: &Passport) {
             out.push_str(&wrapped("  ", sentence, 8, WIDTH));
         }
         for (f, places) in merged(&of_group) {
-            let place = if places.is_empty() { String::new() } else { format!(" ({})", shortened(&places, 48)) };
+            let place = if places.is_empty() {
+                String::new()
+            } else {
+                format!(" ({})", shortened(&places, 48))
+            };
             if group.severity == "note" {
-                out.push_str(&wrapped("  ", &format!("{} {}{place}", f.id, one_line(&f.title)), 8, WIDTH));
+                out.push_str(&wrapped(
+                    "  ",
+                    &format!("{} {}{place}", f.id, one_line(&f.title)),
+                    8,
+                    WIDTH,
+                ));
                 continue;
             }
-            out.push_str(&wrapped("  ", &format!("{} {}{place}: {}", f.id, one_line(&f.title), f.observed), 8, WIDTH));
+            out.push_str(&wrapped(
+                "  ",
+                &format!("{} {}{place}: {}", f.id, one_line(&f.title), f.observed),
+                8,
+                WIDTH,
+            ));
             out.push_str(&wrapped("        -> ", &as_sentence(&f.todo), 11, WIDTH));
         }
     }

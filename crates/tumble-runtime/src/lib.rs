@@ -55,7 +55,9 @@ impl QuantizerOffset {
     #[must_use]
     pub fn lsb(self, code: f64) -> f64 {
         match self {
-            Self::HalfSign => 0.5 * (f64::from(u8::from(code > 0.0)) - f64::from(u8::from(code < 0.0))),
+            Self::HalfSign => {
+                0.5 * (f64::from(u8::from(code > 0.0)) - f64::from(u8::from(code < 0.0)))
+            }
             Self::Half => 0.5,
             Self::None => 0.0,
         }

@@ -9,9 +9,15 @@ use crate::quantity::{self, AccelerationArg, NoiseArg};
 
 /// Calibrates accelerometers against gravity: raw codes in, a passport that you can trust out.
 #[derive(Debug, Parser)]
-#[command(name = "tumble", version, about, max_term_width = 80, after_help = "\
+#[command(
+    name = "tumble",
+    version,
+    about,
+    max_term_width = 80,
+    after_help = "\
 Exit codes: 0 accepted or done, 1 rejected, 2 usage or unreadable input,
-3 accepted with warnings (--strict), 4 indeterminate, 5 I/O failure, 130 Ctrl-C.")]
+3 accepted with warnings (--strict), 4 indeterminate, 5 I/O failure, 130 Ctrl-C."
+)]
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -119,7 +125,9 @@ pub(crate) enum QuantizerArg {
 }
 
 #[derive(Debug, Args)]
-#[command(allow_negative_numbers = true, after_help = "\
+#[command(
+    allow_negative_numbers = true,
+    after_help = "\
 Every flag overrides the preset. Units stand behind the number:
   accelerations m/s2 mm/s2 mg ug LSB; angles deg arcmin arcsec mrad rad;
   ratios bare, % or ppm; noise also ug/rtHz; K2 ug/g2.
@@ -127,7 +135,8 @@ Every flag overrides the preset. Units stand behind the number:
 Examples:
   tumble simulate demo --preset paper-3
   tumble simulate wide --preset paper-3 --angles -65:65:60 --seed 7
-  tumble simulate noisy --bias 0.1m/s2 --scale-error 0.5% --scatter 3arcmin")]
+  tumble simulate noisy --bias 0.1m/s2 --scale-error 0.5% --scatter 3arcmin"
+)]
 pub(crate) struct SimulateArgs {
     /// Folder to write.
     #[arg(value_name = "OUT")]

@@ -31,17 +31,35 @@ fn split(text: &str) -> Result<(f64, &str), String> {
             let unit_at = text.len() - text[end..].trim_start().len();
             // The unit is one of a few constants: give back a static one.
             let unit = UNITS.iter().find(|u| **u == &text[unit_at..]);
-            return unit
-                .map(|u| (value, *u))
-                .ok_or_else(|| format!("unit `{}` is not known; units are {}", &text[unit_at..], UNITS.join(" ")));
+            return unit.map(|u| (value, *u)).ok_or_else(|| {
+                format!("unit `{}` is not known; units are {}", &text[unit_at..], UNITS.join(" "))
+            });
         }
     }
     Err(format!("`{text}` does not start with a number"))
 }
 
 const UNITS: [&str; 20] = [
-    "", "m/s2", "mm/s2", "g", "mg", "ug", "LSB", "rad", "mrad", "deg", "arcmin", "arcsec", "%", "ppm",
-    "m/s2/rtHz", "mg/rtHz", "ug/rtHz", "m/s2/rts", "1/(m/s2)", "ug/g2",
+    "",
+    "m/s2",
+    "mm/s2",
+    "g",
+    "mg",
+    "ug",
+    "LSB",
+    "rad",
+    "mrad",
+    "deg",
+    "arcmin",
+    "arcsec",
+    "%",
+    "ppm",
+    "m/s2/rtHz",
+    "mg/rtHz",
+    "ug/rtHz",
+    "m/s2/rts",
+    "1/(m/s2)",
+    "ug/g2",
 ];
 
 fn wrong_unit(unit: &str, expected: &str) -> String {

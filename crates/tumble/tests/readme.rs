@@ -24,7 +24,10 @@ fn transcripts(document: &str) -> Vec<(String, String)> {
 fn run(command: &str, folder: &Path) -> String {
     let examples = Path::new(env!("CARGO_BIN_EXE_tumble")).with_file_name("examples");
     let command = command
-        .replace("cargo run --release --example paper", &examples.join("paper").display().to_string())
+        .replace(
+            "cargo run --release --example paper",
+            &examples.join("paper").display().to_string(),
+        )
         .replace("cargo run --release --", env!("CARGO_BIN_EXE_tumble"));
     let out = Command::new("sh").arg("-c").arg(&command).current_dir(folder).output().unwrap();
     let text = [out.stdout, out.stderr].concat();
@@ -35,7 +38,11 @@ fn run(command: &str, folder: &Path) -> String {
 #[test]
 fn documented_commands_print_what_is_documented() {
     let folder = tempfile::tempdir().unwrap();
-    std::os::unix::fs::symlink(root().canonicalize().unwrap().join("examples"), folder.path().join("examples")).unwrap();
+    std::os::unix::fs::symlink(
+        root().canonicalize().unwrap().join("examples"),
+        folder.path().join("examples"),
+    )
+    .unwrap();
     let mut compared = 0;
     for document in ["README.md", "examples/paper/README.md"] {
         for (command, expected) in transcripts(document) {
@@ -49,7 +56,9 @@ fn documented_commands_print_what_is_documented() {
 #[test]
 fn links_lead_somewhere() {
     let mut followed = 0;
-    for document in ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "SECURITY.md", "docs/estimators.md"] {
+    for document in
+        ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "SECURITY.md", "docs/estimators.md"]
+    {
         let text = std::fs::read_to_string(root().join(document)).unwrap();
         let folder = root().join(document).parent().unwrap().to_path_buf();
         for target in text.split("](").skip(1).filter_map(|t| t.split(')').next()) {

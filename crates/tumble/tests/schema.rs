@@ -53,7 +53,13 @@ impl Published {
     }
 
     /// Keys of a value that the schema does not describe, with their places.
-    fn undescribed(&self, schemas: &[&Value], value: &Value, place: &str, into: &mut BTreeSet<String>) {
+    fn undescribed(
+        &self,
+        schemas: &[&Value],
+        value: &Value,
+        place: &str,
+        into: &mut BTreeSet<String>,
+    ) {
         let mut applied = Vec::new();
         schemas.iter().for_each(|s| self.applied(s, &mut applied));
         match value {
@@ -127,7 +133,8 @@ fn averaged(positions: &[(f64, f64)], runs: usize) -> Value {
     let mut toml = String::from(
         "[sensor]\n[output]\nquantizer = \"round\"\nnominal_scale = 0.00769\n[bench]\ngravity = 9.81\n",
     );
-    let rows: String = positions.iter().map(|(angle, code)| format!("{angle},{code},100,0.5\n")).collect();
+    let rows: String =
+        positions.iter().map(|(angle, code)| format!("{angle},{code},100,0.5\n")).collect();
     for run in 1..=runs {
         toml.push_str(&format!("[[run]]\nfile = \"run-{run}.csv\"\n"));
         let text = format!("angle_deg,mean_code,samples,std_code\n{rows}");
@@ -158,31 +165,53 @@ fn passports() -> Vec<(String, Value)> {
     let short = Truth { runs: 2, ..truth() };
     let warm = Truth { temperature_degc: Some((20.0, 25.0)), ..truth() };
     let code = |deg: f64| (9.81 * deg.to_radians().sin() - 0.0063) / 0.00769;
-    let exact: Vec<(f64, f64)> = (-6..=6).map(|i| f64::from(10 * i)).map(|a| (a, code(a))).collect();
+    let exact: Vec<(f64, f64)> =
+        (-6..=6).map(|i| f64::from(10 * i)).map(|a| (a, code(a))).collect();
     let mut all = vec![
         ("accepted".to_owned(), accepted()),
-        ("accepted, with everything that is optional".to_owned(), simulated(&warm, true, |toml| {
-            let toml = replaced(&toml, "angle_uncertainty_arcmin", "angle_range_deg = [-65, 65]\nangle_uncertainty_arcmin");
-            let toml = replaced(&toml, "rate_hz", "min_code = -2048\nmax_code = 2047\nrate_hz");
-            let remarks = "mounting = \"A\"\ndate = 2026-03-01\noperator = \"N. N.\"\nnote = \"warm\"";
-            let toml = replaced(&toml, "mounting = \"A\"", remarks);
-            replaced(&toml, "format = 1", "format = 1\nid = \"7/26\"\nissued = 2026-03-02")
-        })),
-        ("several mountings".to_owned(), simulated(&truth(), false, |toml| {
-            let second = "file = \"run-2.csv\"\nmounting = ";
-            replaced(&toml, &format!("{second}\"A\""), &format!("{second}\"B\""))
-        })),
-        ("rejected".to_owned(), simulated(&short, false, |toml| replaced(&toml, "[bench]", "[bench]\nangle_sign = -1"))),
-        ("up and down only".to_owned(), simulated(&short, true, |toml| {
-            let (head, _) = toml.split_once("[[run]]").unwrap();
-            head.to_owned()
-        })),
-        ("nominal scale from up and down".to_owned(), simulated(&short, true, |toml| {
-            replaced(&toml, "nominal_scale", "# nominal_scale")
-        })),
+        (
+            "accepted, with everything that is optional".to_owned(),
+            simulated(&warm, true, |toml| {
+                let toml = replaced(
+                    &toml,
+                    "angle_uncertainty_arcmin",
+                    "angle_range_deg = [-65, 65]\nangle_uncertainty_arcmin",
+                );
+                let toml = replaced(&toml, "rate_hz", "min_code = -2048\nmax_code = 2047\nrate_hz");
+                let remarks =
+                    "mounting = \"A\"\ndate = 2026-03-01\noperator = \"N. N.\"\nnote = \"warm\"";
+                let toml = replaced(&toml, "mounting = \"A\"", remarks);
+                replaced(&toml, "format = 1", "format = 1\nid = \"7/26\"\nissued = 2026-03-02")
+            }),
+        ),
+        (
+            "several mountings".to_owned(),
+            simulated(&truth(), false, |toml| {
+                let second = "file = \"run-2.csv\"\nmounting = ";
+                replaced(&toml, &format!("{second}\"A\""), &format!("{second}\"B\""))
+            }),
+        ),
+        (
+            "rejected".to_owned(),
+            simulated(&short, false, |toml| replaced(&toml, "[bench]", "[bench]\nangle_sign = -1")),
+        ),
+        (
+            "up and down only".to_owned(),
+            simulated(&short, true, |toml| {
+                let (head, _) = toml.split_once("[[run]]").unwrap();
+                head.to_owned()
+            }),
+        ),
+        (
+            "nominal scale from up and down".to_owned(),
+            simulated(&short, true, |toml| replaced(&toml, "nominal_scale", "# nominal_scale")),
+        ),
         ("one angle".to_owned(), averaged(&[(20.0, code(20.0)); 10], 1)),
         ("two angles".to_owned(), averaged(&[(-30.0, code(-30.0)), (30.0, code(30.0))], 1)),
-        ("three angles".to_owned(), averaged(&[(-30.0, code(-30.0)), (0.0, code(0.0)), (30.0, code(30.0))], 1)),
+        (
+            "three angles".to_owned(),
+            averaged(&[(-30.0, code(-30.0)), (0.0, code(0.0)), (30.0, code(30.0))], 1),
+        ),
         ("no noise at all".to_owned(), averaged(&exact, 1)),
         ("copies".to_owned(), averaged(&exact, 2)),
     ];
@@ -236,8 +265,8 @@ fn the_schema_describes_every_key_that_is_written() {
     passport["runs"][0]["estimates"]["bias"]["unknown_b"] = json!(1);
     passport["error_level_lsb"]["unknown_c"] = json!(1);
     published.undescribed(&[&published.json], &passport, "", &mut undescribed);
-    let expected =
-        [".error_level_lsb.unknown_c", ".runs[].estimates.bias.unknown_b", ".unknown_a"].map(str::to_owned);
+    let expected = [".error_level_lsb.unknown_c", ".runs[].estimates.bias.unknown_b", ".unknown_a"]
+        .map(str::to_owned);
     assert_eq!(undescribed, BTreeSet::from(expected));
 }
 
@@ -293,7 +322,8 @@ fn legal_passports_are_not_refused() {
     legal["verdict"] = json!("indeterminate");
     (legal["missing"], legal["reasons"]) = (legal["reasons"].clone(), json!([]));
     assert_eq!(published.refusal(&legal), None, "indeterminate without result");
-    (legal["result"], legal["compensation"]) = (good["result"].clone(), good["compensation"].clone());
+    (legal["result"], legal["compensation"]) =
+        (good["result"].clone(), good["compensation"].clone());
     assert_eq!(published.refusal(&legal), None, "indeterminate with result");
 }
 
@@ -333,13 +363,28 @@ fn broken_passports_are_refused() {
         ("wrong unit", &good, "/result/bias/unit", Some(json!("g"))),
         ("wrong unit of a run", &good, "/runs/0/estimates/misalignment/unit", Some(json!("deg"))),
         ("another schema", &good, "/schema", Some(json!("tumble-passport/2"))),
-        ("another order", &good, "/parameters", Some(json!(["scale_error", "misalignment", "bias"]))),
+        (
+            "another order",
+            &good,
+            "/parameters",
+            Some(json!(["scale_error", "misalignment", "bias"])),
+        ),
         ("short digest", &good, "/inputs/0/sha256", Some(json!("abc"))),
         ("digest in capitals", &good, "/inputs/0/sha256", Some(json!("A".repeat(64)))),
         // Numbers.
         ("negative uncertainty", &good, "/result/bias/standard_uncertainty", Some(json!(-1e-9))),
-        ("negative u of a run", &good, "/runs/0/estimates/bias/standard_uncertainty", Some(json!(-1e-9))),
-        ("negative u of gravity", &good, "/bench/gravity_m_s2/standard_uncertainty", Some(json!(-1))),
+        (
+            "negative u of a run",
+            &good,
+            "/runs/0/estimates/bias/standard_uncertainty",
+            Some(json!(-1e-9)),
+        ),
+        (
+            "negative u of gravity",
+            &good,
+            "/bench/gravity_m_s2/standard_uncertainty",
+            Some(json!(-1)),
+        ),
         ("negative contribution", &good, "/budget/0/contribution", Some(json!(-1))),
         ("uncertainty as a text", &good, "/result/bias/standard_uncertainty", Some(json!("0.1"))),
         ("estimate without value", &good, "/result/bias/value", None),
@@ -349,10 +394,20 @@ fn broken_passports_are_refused() {
         ("interval of three numbers", &good, "/result/bias/interval", Some(json!([0, 1, 2]))),
         ("interval of one number", &good, "/result/bias/interval", Some(json!([0]))),
         ("interval with a null", &good, "/result/bias/interval", Some(json!([0, null]))),
-        ("three numbers in a run", &good, "/runs/0/estimates/bias/interval", Some(json!([0, 1, 2]))),
+        (
+            "three numbers in a run",
+            &good,
+            "/runs/0/estimates/bias/interval",
+            Some(json!([0, 1, 2])),
+        ),
         ("two rows", &good, "/result/covariance", Some(json!([[1, 0, 0], [0, 1, 0]]))),
         ("a short row", &good, "/runs/0/covariance", Some(json!([[1, 0, 0], [0, 1, 0], [0, 0]]))),
-        ("3 × 3 for 2 × 2", &good, "/compensation/covariance", Some(json!([[1, 0, 0], [0, 1, 0], [0, 0, 1]]))),
+        (
+            "3 × 3 for 2 × 2",
+            &good,
+            "/compensation/covariance",
+            Some(json!([[1, 0, 0], [0, 1, 0], [0, 0, 1]])),
+        ),
         ("no misalignment", &good, "/result/misalignment", None),
         ("misalignment and mountings", &good, "/result/mountings", Some(json!([one, one]))),
     ];

@@ -175,7 +175,11 @@ impl<'a> Expression<'a> {
         let mut expression = Self { tokens: tokens(text), next: 0, allowed };
         match expression.any() {
             Some(ok) if expression.next == expression.tokens.len() => {
-                if ok { Ok(()) } else { Err(Refusal::NotAllowed) }
+                if ok {
+                    Ok(())
+                } else {
+                    Err(Refusal::NotAllowed)
+                }
             }
             _ => Err(Refusal::Syntax),
         }

@@ -49,7 +49,12 @@ impl ErrorLevel {
 /// Errors of a run's positions under given coefficients, LSB.
 ///
 /// Upright dwells are left out: they stand on no table angle.
-fn errors(run: &RunAssessment, estimate: &Estimate, setting: &Setting<'_>, theta: [f64; 3]) -> Vec<f64> {
+fn errors(
+    run: &RunAssessment,
+    estimate: &Estimate,
+    setting: &Setting<'_>,
+    theta: [f64; 3],
+) -> Vec<f64> {
     let g = setting.bench.gravity.value_m_s2;
     let [bias, misalignment, scale_error] = theta;
     let k = setting.nominal_scale_m_s2_per_lsb * (1.0 + scale_error);
@@ -63,7 +68,8 @@ fn table_positions<'a>(
     estimate: &'a Estimate,
     setting: &'a Setting<'_>,
 ) -> impl Iterator<Item = (f64, f64)> + 'a {
-    let upright = |deg: f64| setting.bench.seat(crate::Angle::from_deg(deg)).vertical_sign().is_some();
+    let upright =
+        |deg: f64| setting.bench.seat(crate::Angle::from_deg(deg)).vertical_sign().is_some();
     estimate
         .residuals
         .iter()
@@ -102,14 +108,18 @@ pub fn error_level(runs: &[RunAssessment], setting: &Setting<'_>) -> Option<Erro
             let misalignment = others(1, true).unwrap_or(theta[1]);
             errors(run, estimate, setting, [bias, misalignment, scale])
         });
-        by_run.extend(root_mean_square(own_before.iter().copied()).zip(root_mean_square(own_after.iter().copied())).map(
-            |(before_lsb, after_lsb)| RunErrorLevel {
-                name: run.name.clone(),
-                before_lsb,
-                after_lsb,
-                after_held_out_lsb: own_held_out.as_ref().and_then(|h| root_mean_square(h.iter().copied())),
-            },
-        ));
+        by_run.extend(
+            root_mean_square(own_before.iter().copied())
+                .zip(root_mean_square(own_after.iter().copied()))
+                .map(|(before_lsb, after_lsb)| RunErrorLevel {
+                    name: run.name.clone(),
+                    before_lsb,
+                    after_lsb,
+                    after_held_out_lsb: own_held_out
+                        .as_ref()
+                        .and_then(|h| root_mean_square(h.iter().copied())),
+                }),
+        );
         before.extend(own_before);
         after.extend(own_after);
         held_out.extend(own_held_out.into_iter().flatten());

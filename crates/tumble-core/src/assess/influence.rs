@@ -77,10 +77,11 @@ pub fn influence(runs: &[RunAssessment], nominal_scale_m_s2_per_lsb: f64, level:
         .filter_map(|r| r.estimate.as_ref().map(|e| (r, e)))
         .filter(|(_, e)| e.covariance.is_some())
         .collect();
-    let recorded: Vec<f64> = runs.iter().flat_map(|r| r.temperatures_degc.iter().flatten().copied()).collect();
-    let temperature_range_degc = recorded
-        .iter()
-        .fold(None, |r: Option<(f64, f64)>, t| Some(r.map_or((*t, *t), |(lo, hi)| (lo.min(*t), hi.max(*t)))));
+    let recorded: Vec<f64> =
+        runs.iter().flat_map(|r| r.temperatures_degc.iter().flatten().copied()).collect();
+    let temperature_range_degc = recorded.iter().fold(None, |r: Option<(f64, f64)>, t| {
+        Some(r.map_or((*t, *t), |(lo, hi)| (lo.min(*t), hi.max(*t))))
+    });
     let rows: Vec<&[WeightedRow]> = full.iter().map(|(_, e)| e.weighted_rows.as_slice()).collect();
     let k = |e: &Estimate| {
         let dk = e.values[Parameter::ScaleError.index()].unwrap_or(0.0);

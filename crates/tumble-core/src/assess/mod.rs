@@ -12,12 +12,12 @@ pub use pool::{Interval, PooledParameter, in_lsb, pool, scale_factor};
 pub use result::{BudgetLine, CompensationResult, compensation_result};
 pub use verdict::{Verdict, may_carry_result, verdict};
 
-use crate::estimate::{
-    Estimate, EstimateOptions, Residual, Setting, Weights, estimate,
-};
+use crate::estimate::{Estimate, EstimateOptions, Residual, Setting, Weights, estimate};
 use crate::judge::{self, Structure};
 use crate::nominal::{NominalScale, NominalScaleError, nominal_scale};
-use crate::{Experiment, Finding, FindingKind, GravitySource, Position, Run, STANDARD_GRAVITY_M_S2};
+use crate::{
+    Experiment, Finding, FindingKind, GravitySource, Position, Run, STANDARD_GRAVITY_M_S2,
+};
 
 /// Everything that is known about an experiment after it was judged.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,7 +92,10 @@ impl std::error::Error for AssessError {}
 /// not errors.
 ///
 /// **Source** method sections 3–7, 9, 12.
-pub fn assess(experiment: &Experiment, options: &EstimateOptions) -> Result<Assessment, AssessError> {
+pub fn assess(
+    experiment: &Experiment,
+    options: &EstimateOptions,
+) -> Result<Assessment, AssessError> {
     let (k0, mut findings) = nominal_scale(experiment).map_err(AssessError::NominalScale)?;
     let gravity = &experiment.bench.gravity;
     findings.extend(gravity_findings(experiment));
@@ -113,7 +116,12 @@ pub fn assess(experiment: &Experiment, options: &EstimateOptions) -> Result<Asse
     let contradicted = findings.iter().any(|f| f.kind.severity() == crate::Severity::Reject);
     findings.extend(judge::reproducible(&experiment.runs, &pooled));
     if !contradicted {
-        findings.extend(judge::determined_result(&pooled, &runs, &experiment.targets, options.level));
+        findings.extend(judge::determined_result(
+            &pooled,
+            &runs,
+            &experiment.targets,
+            options.level,
+        ));
     }
     let structure = structure_findings(&runs, &mut findings);
     let influence = influence(&runs, k0.value_m_s2_per_lsb, options.level);
@@ -125,7 +133,9 @@ pub fn assess(experiment: &Experiment, options: &EstimateOptions) -> Result<Asse
     let verdict = verdict(&findings);
     let budget = result::budget(&pooled, gravity);
     let compensation = may_carry_result(&findings)
-        .then(|| compensation_result(&pooled, &runs, experiment.output.quantizer, k0.value_m_s2_per_lsb))
+        .then(|| {
+            compensation_result(&pooled, &runs, experiment.output.quantizer, k0.value_m_s2_per_lsb)
+        })
         .flatten();
     // Worst first; within a severity in the order of discovery.
     findings.sort_by_key(|f| std::cmp::Reverse(f.kind.severity()));
@@ -186,7 +196,9 @@ fn assess_run(
     let g = bench.gravity.value_m_s2;
     // The paper's adjustment uses [scale] for k0 alone.
     let candidates = match options.method {
-        crate::estimate::Method::Paper if !experiment.runs.is_empty() => run.positions.iter().collect(),
+        crate::estimate::Method::Paper if !experiment.runs.is_empty() => {
+            run.positions.iter().collect()
+        }
         _ => candidates,
     };
     let usable = judge::usable_positions(run, candidates, &experiment.output, bench, k0);
@@ -299,7 +311,9 @@ fn pair_findings(experiment: &Experiment) -> Option<Finding> {
         place: "[scale]".into(),
         observed: "up and down belong to no run".into(),
         limit: "run = \"…\"".into(),
-        remedy: "if they were taken in a run's power-up, name it: they tell bias and misalignment apart".into(),
+        remedy:
+            "if they were taken in a run's power-up, name it: they tell bias and misalignment apart"
+                .into(),
     })
 }
 
@@ -313,6 +327,3 @@ fn budget_finding() -> Finding {
         remedy: "3′ of eccentricity shifts the scale by 570 ppm at ±65° and hardly shows in the residuals: check the dial against a reference before relying on less".into(),
     }
 }
-
-
-

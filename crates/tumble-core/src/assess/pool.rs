@@ -1,9 +1,9 @@
 //! Several runs, one value: mean of the runs, Student interval, prediction of the next power-up.
 
 use super::RunAssessment;
+use crate::Gravity;
 use crate::estimate::{Estimate, Parameter};
 use crate::stats::{mean, sample_std, student_factor};
-use crate::Gravity;
 
 /// A closed interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -125,7 +125,8 @@ fn pool_one(
             (only.standard_uncertainty(parameter)?, only.degrees_of_freedom as f64)
         }
     };
-    let u_budget = gravity_sensitivity(parameter, value, gravity) * gravity.standard_uncertainty_m_s2;
+    let u_budget =
+        gravity_sensitivity(parameter, value, gravity) * gravity.standard_uncertainty_m_s2;
     let standard_uncertainty = u_statistical.hypot(u_budget);
     let degrees_of_freedom = welch_satterthwaite(standard_uncertainty, u_statistical, dof);
     let coverage_factor = student_factor(level, degrees_of_freedom)?;
@@ -202,7 +203,10 @@ mod tests {
     #[test]
     fn intervals_intersect_or_not() {
         let a = Interval { low: 0.0, high: 2.0 };
-        assert_eq!(a.intersection(Interval { low: 1.0, high: 3.0 }), Some(Interval { low: 1.0, high: 2.0 }));
+        assert_eq!(
+            a.intersection(Interval { low: 1.0, high: 3.0 }),
+            Some(Interval { low: 1.0, high: 2.0 })
+        );
         assert_eq!(a.intersection(Interval { low: 2.5, high: 3.0 }), None);
     }
 

@@ -35,7 +35,8 @@ pub struct BudgetLine {
 pub(super) fn budget(pooled: &[PooledParameter], gravity: &Gravity) -> Vec<BudgetLine> {
     let mut lines = Vec::new();
     for p in pooled {
-        let share = |u: f64| (u / p.standard_uncertainty).powi(2);
+        // Copies of one run scatter by nothing; then nothing has a share in it.
+        let share = |u: f64| if u > 0.0 { (u / p.standard_uncertainty).powi(2) } else { 0.0 };
         let scatter_dof = match p.between_run_sd {
             Some(_) => (p.runs - 1) as f64,
             None => p.degrees_of_freedom,
@@ -132,7 +133,8 @@ pub fn compensation_result(
     let offset = quantizer.offset();
     let code = (0.5 * valid_range_lsb.1.abs().max(valid_range_lsb.0.abs())).round();
     let acceleration = scale_factor_m_s2_per_lsb * (code + offset.lsb(code)) - bias.value;
-    let variances: Vec<f64> = runs.iter().filter_map(|r| r.reading_std_lsb).map(|s| s * s).collect();
+    let variances: Vec<f64> =
+        runs.iter().filter_map(|r| r.reading_std_lsb).map(|s| s * s).collect();
     Some(CompensationResult {
         scale_factor_m_s2_per_lsb,
         u_scale_factor: k * scale.standard_uncertainty,
@@ -149,8 +151,10 @@ pub fn compensation_result(
 /// Correlations of the pooled parameters: mean of the runs' covariances, plus the spread between runs on the
 /// diagonal.
 fn correlations(pooled: &[PooledParameter], runs: &[RunAssessment]) -> Matrix {
-    let own: Vec<&Matrix> =
-        runs.iter().filter_map(|r| r.estimate.as_ref().and_then(|e| e.covariance.as_ref())).collect();
+    let own: Vec<&Matrix> = runs
+        .iter()
+        .filter_map(|r| r.estimate.as_ref().and_then(|e| e.covariance.as_ref()))
+        .collect();
     let n = own.len().max(1) as f64;
     let mut c = Matrix::zeros(3, 3);
     for i in 0..3 {

@@ -48,7 +48,11 @@ impl Equation {
 
 /// Positions as equations, in measured order.
 #[must_use]
-pub fn equations(positions: &[&Position], setting: &Setting<'_>, weights: Weights) -> Vec<Equation> {
+pub fn equations(
+    positions: &[&Position],
+    setting: &Setting<'_>,
+    weights: Weights,
+) -> Vec<Equation> {
     let sigma_phi = setting.bench.angle_uncertainty.map_or(0.0, |a| a.rad());
     let mut eqs: Vec<Equation> = positions
         .iter()

@@ -61,12 +61,18 @@ pub(super) fn stabilization(fit: &Fit, level: f64) -> Stabilization {
         let outside = |s: &&SequentialEstimate| {
             s.values.iter().zip(fit.values).zip(u).any(|((v, last), u)| (v - last).abs() > u)
         };
-        all.iter().rfind(outside).map_or_else(|| all.first().map_or(n, |s| s.positions), |s| s.positions + 1)
+        all.iter()
+            .rfind(outside)
+            .map_or_else(|| all.first().map_or(n, |s| s.positions), |s| s.positions + 1)
     });
     let stride = all.len().div_ceil(KEPT).max(1);
     let last = all.len().saturating_sub(1);
-    out.sequential =
-        all.into_iter().enumerate().filter(|(i, _)| i % stride == 0 || *i == last).map(|(_, s)| s).collect();
+    out.sequential = all
+        .into_iter()
+        .enumerate()
+        .filter(|(i, _)| i % stride == 0 || *i == last)
+        .map(|(_, s)| s)
+        .collect();
     out
 }
 

@@ -38,13 +38,18 @@ pub fn usable_positions<'a>(
             place: run.name.clone(),
             observed: format!("all {total} dwells at the converter's end"),
             limit: ends,
-            remedy: "lower the gain or choose a range of the sensor that covers ±1 g, and measure again".into(),
+            remedy:
+                "lower the gain or choose a range of the sensor that covers ±1 g, and measure again"
+                    .into(),
         });
     } else if let Some(first) = censored.first() {
         findings.push(Finding {
             kind: FindingKind::SaturatedDwell,
             place: first.place.clone(),
-            observed: format!("{} of {total} dwells hold codes at the converter's end; left out", censored.len()),
+            observed: format!(
+                "{} of {total} dwells hold codes at the converter's end; left out",
+                censored.len()
+            ),
             limit: ends,
             remedy: "keep the angles inside the converter's range, or lower the gain".into(),
         });
@@ -88,7 +93,9 @@ fn stuck(run: &Run, positions: &[&Position], full_scale_lsb: f64) -> Option<Find
             run.name
         ),
         limit: format!("{STUCK_LIMIT_LSB} LSB's worth"),
-        remedy: "check that the logger reads fresh samples and that the converter runs; measure again".into(),
+        remedy:
+            "check that the logger reads fresh samples and that the converter runs; measure again"
+                .into(),
     })
 }
 
@@ -98,7 +105,10 @@ pub fn identical_runs(runs: &[Run]) -> Vec<Finding> {
     let same = |a: &Run, b: &Run| {
         !a.positions.is_empty()
             && a.positions.len() == b.positions.len()
-            && a.positions.iter().zip(&b.positions).all(|(p, q)| p.angle == q.angle && p.readings == q.readings)
+            && a.positions
+                .iter()
+                .zip(&b.positions)
+                .all(|(p, q)| p.angle == q.angle && p.readings == q.readings)
     };
     let mut findings = Vec::new();
     for (i, a) in runs.iter().enumerate() {

@@ -21,7 +21,10 @@ pub fn few_angles(run: &str, estimate: &Estimate) -> Vec<Finding> {
         .map(Parameter::words)
         .collect();
     let parameters = 3;
-    let seen = format!("{} positions at {} different angles", estimate.positions, estimate.distinct_angles);
+    let seen = format!(
+        "{} positions at {} different angles",
+        estimate.positions, estimate.distinct_angles
+    );
     let finding = |kind, observed: String, limit: &str, remedy: String| Finding {
         kind,
         place: run.to_owned(),
@@ -36,7 +39,8 @@ pub fn few_angles(run: &str, estimate: &Estimate) -> Vec<Finding> {
             format!("{seen}; not determined: {}", absent.join(", ")),
             "three well separated angles on the table",
             if given > 0 && estimate.values[Parameter::Misalignment.index()].is_none() {
-                "add dwells on the table on both sides of 0°, for instance at −30°, 0° and 30°".into()
+                "add dwells on the table on both sides of 0°, for instance at −30°, 0° and 30°"
+                    .into()
             } else {
                 "add dwells on the table at three or more well separated angles, for instance −60°, 0° and 60°, each several times".into()
             },
@@ -188,6 +192,8 @@ fn partner_remedy(parameter: Parameter, partner: Option<Parameter>) -> &'static 
     match partner {
         Some(q) if q.index() < parameter.index() => separating_positions(q, parameter),
         Some(q) => separating_positions(parameter, q),
-        None => "reduce the scatter of the positions (longer dwells, more careful setting) or add positions",
+        None => {
+            "reduce the scatter of the positions (longer dwells, more careful setting) or add positions"
+        }
     }
 }

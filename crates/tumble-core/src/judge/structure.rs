@@ -21,14 +21,21 @@ pub struct Structure {
 
 /// Tests the residuals for a quadratic and a cubic in the applied acceleration.
 #[must_use]
-pub fn structure(estimates: &[(&str, &Estimate)], significance_tests: usize) -> (Structure, Vec<Finding>) {
-    let runs: Vec<&[WeightedRow]> = estimates.iter().map(|(_, e)| e.weighted_rows.as_slice()).collect();
+pub fn structure(
+    estimates: &[(&str, &Estimate)],
+    significance_tests: usize,
+) -> (Structure, Vec<Finding>) {
+    let runs: Vec<&[WeightedRow]> =
+        estimates.iter().map(|(_, e)| e.weighted_rows.as_slice()).collect();
     let level = |power: i32| -> Vec<Vec<f64>> {
         estimates
             .iter()
             .map(|(_, e)| {
                 let dphi = e.values[1].unwrap_or(0.0);
-                e.residuals.iter().map(|r| (r.angle_deg.to_radians() + dphi).sin().powi(power)).collect()
+                e.residuals
+                    .iter()
+                    .map(|r| (r.angle_deg.to_radians() + dphi).sin().powi(power))
+                    .collect()
             })
             .collect()
     };

@@ -84,7 +84,8 @@ pub fn noise(run: &str, positions: &[&Position], output: &Output) -> Vec<Finding
             place: run.to_owned(),
             observed: format!("{one_code} of {total} dwells show a single code"),
             limit: "two codes or more".into(),
-            remedy: "normal in a quiet dwell; the mean is known to the width of the code only".into(),
+            remedy: "normal in a quiet dwell; the mean is known to the width of the code only"
+                .into(),
         });
     }
     let variances: Vec<f64> =

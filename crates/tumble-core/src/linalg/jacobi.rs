@@ -92,7 +92,11 @@ mod tests {
 
     #[test]
     fn the_null_vector_of_a_singular_matrix_is_found() {
-        let s = singular_values(&Matrix::from_rows([[1.0, 1.0, 0.0], [0.0, 0.0, 1.0], [2.0, 2.0, 0.0]]));
+        let s = singular_values(&Matrix::from_rows([
+            [1.0, 1.0, 0.0],
+            [0.0, 0.0, 1.0],
+            [2.0, 2.0, 0.0],
+        ]));
         assert!(s.values[2] < 1e-15);
         let null = [s.right[(0, 2)], s.right[(1, 2)], s.right[(2, 2)]];
         assert!((null[0] + null[1]).abs() < 1e-15 && null[2].abs() < 1e-15);

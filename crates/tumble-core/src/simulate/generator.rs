@@ -33,7 +33,8 @@ impl Truth {
     /// What the converter makes of an analogue value: rounded, and held at its ends.
     #[must_use]
     pub fn code(&self, analogue_lsb: f64) -> Option<Code> {
-        let code = self.quantizer.code(analogue_lsb.clamp(f64::from(i32::MIN), f64::from(i32::MAX)))?;
+        let code =
+            self.quantizer.code(analogue_lsb.clamp(f64::from(i32::MIN), f64::from(i32::MAX)))?;
         let code = self.ends.min_code.map_or(code, |m| code.max(m));
         Some(self.ends.max_code.map_or(code, |m| code.min(m)))
     }
@@ -58,7 +59,8 @@ impl Truth {
 /// Seed and run are mixed first: neighbouring states of a congruential generator give related streams.
 fn stream(truth: &Truth, run: u32) -> Pcg64 {
     let mut state = truth.seed ^ u64::from(run).wrapping_mul(0xd1b5_4a32_d192_ed03);
-    let mut mixed = || -> u128 { u128::from(split_mix(&mut state)) << 64 | u128::from(split_mix(&mut state)) };
+    let mut mixed =
+        || -> u128 { u128::from(split_mix(&mut state)) << 64 | u128::from(split_mix(&mut state)) };
     Pcg64::new(mixed(), mixed())
 }
 
@@ -123,8 +125,7 @@ pub fn simulate_run(truth: &Truth, run: u32) -> SimulatedRun {
 /// Simulates a pair of dwells with the axis up and down, in a power-up of their own.
 #[must_use]
 pub fn simulate_vertical(truth: &Truth) -> SimulatedRun {
-    let alone =
-        Truth { angles_deg: Vec::new(), upright_in_each_run: true, ..truth.clone() };
+    let alone = Truth { angles_deg: Vec::new(), upright_in_each_run: true, ..truth.clone() };
     simulate_run(&alone, u32::MAX - 1)
 }
 

@@ -106,7 +106,10 @@ impl std::fmt::Display for TruthError {
             Self::Negative { name, value } => write!(f, "{name} = {value} must not be negative"),
             Self::Empty { what } => write!(f, "nothing to simulate: no {what}"),
             Self::TooLarge { samples, limit } => {
-                write!(f, "{samples:.0} samples are more than {limit:.0}; shorten the dwell or the plan")
+                write!(
+                    f,
+                    "{samples:.0} samples are more than {limit:.0}; shorten the dwell or the plan"
+                )
             }
         }
     }
@@ -169,12 +172,17 @@ impl Truth {
         if let Some((name, value)) = deviations.iter().find(|(_, v)| *v < 0.0) {
             return Err(TruthError::Negative { name, value: *value });
         }
-        let samples = self.dwell_s * self.rate_hz * self.angles_deg.len() as f64 * f64::from(self.runs);
+        let samples =
+            self.dwell_s * self.rate_hz * self.angles_deg.len() as f64 * f64::from(self.runs);
         match () {
             () if self.angles_deg.is_empty() => Err(TruthError::Empty { what: "angles" }),
             () if self.runs == 0 => Err(TruthError::Empty { what: "runs" }),
-            () if self.samples_per_dwell() == 0 => Err(TruthError::Empty { what: "samples in a dwell" }),
-            () if samples > SAMPLE_LIMIT => Err(TruthError::TooLarge { samples, limit: SAMPLE_LIMIT }),
+            () if self.samples_per_dwell() == 0 => {
+                Err(TruthError::Empty { what: "samples in a dwell" })
+            }
+            () if samples > SAMPLE_LIMIT => {
+                Err(TruthError::TooLarge { samples, limit: SAMPLE_LIMIT })
+            }
             () => Ok(()),
         }
     }

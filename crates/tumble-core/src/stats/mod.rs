@@ -28,7 +28,11 @@ pub fn student_factor(level: f64, dof: f64) -> Option<f64> {
     }
     let upper = 0.5 + 0.5 * level;
     // Past 1e7 the two quantiles differ by less than 1e-7 of one another.
-    let t = if dof < 1e7 { StudentsT::new(0.0, 1.0, dof).ok()?.inverse_cdf(upper) } else { normal_quantile(upper) };
+    let t = if dof < 1e7 {
+        StudentsT::new(0.0, 1.0, dof).ok()?.inverse_cdf(upper)
+    } else {
+        normal_quantile(upper)
+    };
     t.is_finite().then_some(t)
 }
 
@@ -100,7 +104,9 @@ mod tests {
     #[test]
     fn coverage_factors_of_ea_4_02() {
         // EA-4/02, table of k for 95.45 %.
-        for (dof, k) in [(1.0, 13.97), (2.0, 4.53), (3.0, 3.31), (5.0, 2.65), (10.0, 2.28), (50.0, 2.05)] {
+        for (dof, k) in
+            [(1.0, 13.97), (2.0, 4.53), (3.0, 3.31), (5.0, 2.65), (10.0, 2.28), (50.0, 2.05)]
+        {
             assert!((student_factor(0.9545, dof).unwrap() - k).abs() < 0.006, "{dof}");
         }
     }

@@ -36,7 +36,11 @@ pub(super) fn read<R: Read>(
             .and_then(|n| u64::try_from(n).ok())
             .filter(|n| *n > 0)
             .ok_or_else(|| {
-                row.wrong(samples, "a positive number of samples", "give the number of samples in the mean")
+                row.wrong(
+                    samples,
+                    "a positive number of samples",
+                    "give the number of samples in the mean",
+                )
             })?;
         let std = match std {
             Some(i) => {

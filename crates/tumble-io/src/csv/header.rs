@@ -40,7 +40,10 @@ impl Columns {
     ) -> Result<Self, ReadError> {
         let fail = |problem| Err(ReadError { place: place.clone(), problem });
         let Ok(text) = std::str::from_utf8(line) else {
-            return fail(Problem::Format { seen: "the header is not UTF-8 text", remedy: "save the file as UTF-8" });
+            return fail(Problem::Format {
+                seen: "the header is not UTF-8 text",
+                remedy: "save the file as UTF-8",
+            });
         };
         if text.contains('\0') {
             return fail(Problem::Format { seen: "binary data", remedy: "give a CSV file" });
@@ -114,7 +117,9 @@ impl Columns {
             problem: Problem::Columns {
                 seen: self.names.clone(),
                 what: format!("no column `{known}`"),
-                remedy: format!("if another column holds it, write columns = {{{known} = \"{own}\"}} in its [[run]]"),
+                remedy: format!(
+                    "if another column holds it, write columns = {{{known} = \"{own}\"}} in its [[run]]"
+                ),
             },
         }
     }

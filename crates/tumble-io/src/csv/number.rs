@@ -53,7 +53,8 @@ pub(crate) fn integer(field: &[u8]) -> Option<i32> {
 pub(crate) fn real(field: &[u8], sign: DecimalSign) -> Option<f64> {
     let plain = |text: &[u8]| {
         // `str::parse` also takes "inf", "nan" and "infinity".
-        let numeric = text.iter().all(|b| matches!(b, b'0'..=b'9' | b'+' | b'-' | b'.' | b'e' | b'E'));
+        let numeric =
+            text.iter().all(|b| matches!(b, b'0'..=b'9' | b'+' | b'-' | b'.' | b'e' | b'E'));
         let value: f64 = std::str::from_utf8(text).ok().filter(|_| numeric)?.parse().ok()?;
         value.is_finite().then_some(value)
     };
@@ -63,7 +64,8 @@ pub(crate) fn real(field: &[u8], sign: DecimalSign) -> Option<f64> {
         // A comma beside a point would be a thousands mark: not guessed.
         (DecimalSign::CommaOrPoint, true) if field.contains(&b'.') => None,
         (DecimalSign::CommaOrPoint, true) => {
-            let pointed: Vec<u8> = field.iter().map(|b| if *b == b',' { b'.' } else { *b }).collect();
+            let pointed: Vec<u8> =
+                field.iter().map(|b| if *b == b',' { b'.' } else { *b }).collect();
             plain(&pointed)
         }
     }
@@ -82,7 +84,19 @@ mod tests {
         assert_eq!(integer(b"12.000"), Some(12));
         assert_eq!(integer(b"2147483647"), Some(i32::MAX));
         assert_eq!(integer(b"-2147483648"), Some(i32::MIN));
-        for wrong in ["", "-", "12.5", "0x0c", "1e3", "2147483648", "12.", "1 2", "--1", "nan", "99999999999999999999"] {
+        for wrong in [
+            "",
+            "-",
+            "12.5",
+            "0x0c",
+            "1e3",
+            "2147483648",
+            "12.",
+            "1 2",
+            "--1",
+            "nan",
+            "99999999999999999999",
+        ] {
             assert_eq!(integer(wrong.as_bytes()), None, "{wrong}");
         }
     }

@@ -97,7 +97,8 @@ pub(super) fn read<R: Read>(
                     d.angle_text = angle_text.to_vec();
                 }
             } else {
-                let next = Open::new(angle_text, position_text, dial_deg, number, options.quantizer);
+                let next =
+                    Open::new(angle_text, position_text, dial_deg, number, options.quantizer);
                 if let Some(done) = open.replace(next) {
                     dwells.push(done.close(&shown_as, options)?);
                 }
@@ -133,7 +134,12 @@ impl Open {
     }
 
     #[inline]
-    fn record(&mut self, row: &Row<'_>, at: &Indices, options: &RunFileOptions<'_>) -> Result<(), ReadError> {
+    fn record(
+        &mut self,
+        row: &Row<'_>,
+        at: &Indices,
+        options: &RunFileOptions<'_>,
+    ) -> Result<(), ReadError> {
         let time = match at.time {
             Some(i) if options.discard_s > 0.0 => Some(row.real(i, "a time in seconds")?),
             _ => None,
@@ -161,7 +167,9 @@ impl Open {
                 }
                 histogram.record(Code(code));
                 blocks.record(i128::from(code));
-                if histogram.samples().is_multiple_of(DISTINCT_CHECK) && histogram.distinct() > DISTINCT_LIMIT {
+                if histogram.samples().is_multiple_of(DISTINCT_CHECK)
+                    && histogram.distinct() > DISTINCT_LIMIT
+                {
                     return Err(ReadError {
                         place: row.place(),
                         problem: Problem::NotADwell { limit: DISTINCT_LIMIT },
@@ -183,7 +191,8 @@ impl Open {
         }
         if let Some(i) = at.temperature {
             let t = row.real(i, "a temperature in °C")?;
-            let steps = ValueMoments::steps(t).map_err(|_| row.wrong(i, "a temperature in °C", "mend the row"))?;
+            let steps = ValueMoments::steps(t)
+                .map_err(|_| row.wrong(i, "a temperature in °C", "mend the row"))?;
             self.temperature.record(steps);
         }
         Ok(())
@@ -196,7 +205,10 @@ impl Open {
                 problem: Problem::Value {
                     key: "discard_s".into(),
                     given: options.discard_s.to_string(),
-                    expected: format!("less than the dwell at {}° lasts ({} rows)", self.dial_deg, self.rows),
+                    expected: format!(
+                        "less than the dwell at {}° lasts ({} rows)",
+                        self.dial_deg, self.rows
+                    ),
                 },
             });
         }

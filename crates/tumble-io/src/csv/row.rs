@@ -91,7 +91,12 @@ impl Row<'_> {
         })
     }
 
-    pub(super) fn wrong(&self, index: usize, expected: &'static str, remedy: &'static str) -> ReadError {
+    pub(super) fn wrong(
+        &self,
+        index: usize,
+        expected: &'static str,
+        remedy: &'static str,
+    ) -> ReadError {
         ReadError {
             place: Place::field(self.file, self.line, self.columns.name(index)),
             problem: Problem::Field {

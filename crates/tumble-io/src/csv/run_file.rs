@@ -61,7 +61,10 @@ pub(crate) fn read_run_file(
         Some((number, line)) => (number, line.to_vec()),
         None => {
             let what = "the file is empty; it needs a header line such as `angle_deg,code`";
-            return Err(ReadError { place: Place::file(shown_as), problem: Problem::Empty { what } });
+            return Err(ReadError {
+                place: Place::file(shown_as),
+                problem: Problem::Empty { what },
+            });
         }
     };
     let place = Place::line(shown_as, number);
@@ -71,8 +74,11 @@ pub(crate) fn read_run_file(
             place,
             problem: Problem::Columns {
                 seen: columns.names,
-                what: "the file has angles, and experiment.toml gives one for the whole file".into(),
-                remedy: "use `file = …` instead of `files = [{file, angle_deg}]`, or drop the column".into(),
+                what: "the file has angles, and experiment.toml gives one for the whole file"
+                    .into(),
+                remedy:
+                    "use `file = …` instead of `files = [{file, angle_deg}]`, or drop the column"
+                        .into(),
             },
         });
     }

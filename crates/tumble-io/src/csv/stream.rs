@@ -40,13 +40,8 @@ impl<R: Read> CodeStream<R> {
     pub fn new(reader: R, shown_as: &str, whole_codes: bool) -> Result<Self, CodeStreamError> {
         let mut lines = Lines::new(reader, shown_as);
         let first = lines.next_data()?.map(|(n, line)| (n, line.to_vec()));
-        let mut stream = Self {
-            lines,
-            header: None,
-            first: None,
-            whole_codes,
-            buffer: FieldBuffer::default(),
-        };
+        let mut stream =
+            Self { lines, header: None, first: None, whole_codes, buffer: FieldBuffer::default() };
         let Some((number, line)) = first else { return Ok(stream) };
         if real(trimmed(&line), DecimalSign::CommaOrPoint).is_some() {
             stream.first = Some((number, line));
@@ -92,9 +87,9 @@ impl<R: Read> CodeStream<R> {
         row.check_width()?;
         let text = trimmed(row.fields.get(*reading));
         let value = if whole {
-            integer(text).map(f64::from).ok_or_else(|| {
-                row.wrong(*reading, "an integer code", "mend or remove the row")
-            })?
+            integer(text)
+                .map(f64::from)
+                .ok_or_else(|| row.wrong(*reading, "an integer code", "mend or remove the row"))?
         } else {
             row.real(*reading, "a number")?
         };
@@ -112,11 +107,8 @@ impl<R: Read> CodeStream<R> {
 
 fn bare(file: &str, number: u64, line: &[u8], whole: bool) -> Result<Reading, ReadError> {
     let text = trimmed(line);
-    let value = if whole {
-        integer(text).map(f64::from)
-    } else {
-        real(text, DecimalSign::CommaOrPoint)
-    };
+    let value =
+        if whole { integer(text).map(f64::from) } else { real(text, DecimalSign::CommaOrPoint) };
     match value {
         Some(value) => {
             Ok(Reading { time: None, text: String::from_utf8_lossy(text).replace(',', "."), value })

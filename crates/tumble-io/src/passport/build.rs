@@ -57,7 +57,12 @@ pub fn build(
         parameters: Parameter::ALL.iter().map(|p| p.name().to_owned()).collect(),
         result: result(assessment, options.level),
         compensation: compensation(assessment),
-        runs: assessment.runs.iter().enumerate().map(|(i, r)| run(folder, assessment, options, i, r)).collect(),
+        runs: assessment
+            .runs
+            .iter()
+            .enumerate()
+            .map(|(i, r)| run(folder, assessment, options, i, r))
+            .collect(),
         error_level_lsb: assessment.error_level.as_ref().map(|e| wire::ErrorLevel {
             before: e.before_lsb,
             after: e.after_lsb,
@@ -302,9 +307,8 @@ fn run_estimate(e: &RunFit, parameter: Parameter, k0: f64, level: f64) -> Option
     let value = e.values[parameter.index()]?;
     let u = e.standard_uncertainty(parameter);
     let dof = e.degrees_of_freedom as f64;
-    let interval = u
-        .zip(student_factor(level, dof))
-        .map(|(u, t)| pair(Interval::around(value, t * u)));
+    let interval =
+        u.zip(student_factor(level, dof)).map(|(u, t)| pair(Interval::around(value, t * u)));
     Some(wire::Estimate {
         value,
         unit: parameter.unit().into(),

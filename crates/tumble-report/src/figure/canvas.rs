@@ -18,7 +18,13 @@ pub(super) fn label(x: f64, y: f64, class: &str, text: &str) -> Markup {
 }
 
 /// The whole document.
-pub(super) fn document(name: &str, title: &str, description: &str, height: f64, body: &Markup) -> String {
+pub(super) fn document(
+    name: &str,
+    title: &str,
+    description: &str,
+    height: f64,
+    body: &Markup,
+) -> String {
     let scope = format!("tumble-{name}");
     html! {
         svg xmlns="http://www.w3.org/2000/svg" class=(scope) role="img"

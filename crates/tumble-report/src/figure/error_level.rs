@@ -37,7 +37,10 @@ pub(super) fn figure(passport: &Passport) -> Option<Figure> {
         (Sample::Box(AFTER), "after, own coefficients".to_owned()),
     ];
     if held_out {
-        entries.push((Sample::Box(HELD_OUT), "after, coefficients of the other runs (held out)".to_owned()));
+        entries.push((
+            Sample::Box(HELD_OUT),
+            "after, coefficients of the other runs (held out)".to_owned(),
+        ));
     }
     let (keys, top) = legend(&entries, (LEFT - 10.0, WIDTH - 10.0), 6.0);
     let top = top + 10.0;

@@ -86,7 +86,10 @@ fn rows(p: &Panel<'_>) -> Vec<Row> {
             class: "ink".into(),
             ends,
             centre: Some((3, value)),
-            numbers: value_with_uncertainty(value, p.unit.of(result.expanded_uncertainty.unwrap_or(0.0))),
+            numbers: value_with_uncertainty(
+                value,
+                p.unit.of(result.expanded_uncertainty.unwrap_or(0.0)),
+            ),
             is_run: false,
         });
     }
@@ -110,7 +113,10 @@ fn panel(p: &Panel<'_>, top: f64) -> Option<(Markup, f64)> {
     let x = Axis::with_margin(range(rows.iter().flat_map(|r| r.ends))?, 0.06, (LEFT, right), 6.0)?;
     let (first, bottom) = (top + HEAD, top + HEAD + rows.len() as f64 * ROW + 4.0);
     let runs = rows.iter().filter(|r| r.is_run).count();
-    let common = p.result.filter(|_| runs > 1).map(|r| r.intersection_of_runs.map(|i| i.map(|v| p.unit.of(v))));
+    let common = p
+        .result
+        .filter(|_| runs > 1)
+        .map(|r| r.intersection_of_runs.map(|i| i.map(|v| p.unit.of(v))));
     let remark = match common {
         Some(Some(_)) => "shaded: common to all runs' intervals",
         Some(None) => "the runs' intervals have nothing in common (intersection: empty)",

@@ -28,7 +28,11 @@ const LINE: f64 = 18.0;
 const SAMPLE: f64 = 26.0;
 
 /// Entries from (`x`, `y`) to the right edge; gives the markup and its height.
-pub(super) fn legend(entries: &[(Sample, String)], (left, right): (f64, f64), y: f64) -> (Markup, f64) {
+pub(super) fn legend(
+    entries: &[(Sample, String)],
+    (left, right): (f64, f64),
+    y: f64,
+) -> (Markup, f64) {
     let (mut x, mut row) = (left, 0.0);
     let mut placed = Vec::new();
     for (sample, words) in entries {

@@ -8,7 +8,7 @@ use super::axis::{Axis, drawable, range};
 use super::canvas::{WIDTH, c, document};
 use super::legend::{Sample, legend};
 use super::mark::{colour, marker};
-use crate::numbers::{significant, typographic};
+use crate::numbers::significant;
 use crate::runs::MOST_RUNS;
 use crate::units::Units;
 use crate::words::shortened;
@@ -35,12 +35,15 @@ pub(super) fn figure(passport: &Passport) -> Option<Figure> {
         .fold(None, |m: Option<f64>, s| Some(m.map_or(s, |m| m.max(s))));
 
     let largest = range(all().map(|r| r.lsb.abs()).chain(widest))?.1;
-    let x = Axis::with_margin(range(all().map(|r| r.angle_deg))?, 0.03, (LEFT, WIDTH - 16.0), 10.0)?;
+    let x =
+        Axis::with_margin(range(all().map(|r| r.angle_deg))?, 0.03, (LEFT, WIDTH - 16.0), 10.0)?;
     let mut entries: Vec<(Sample, String)> =
         shown.iter().map(|(i, r)| (Sample::Marker(*i), shortened(&r.name, 18))).collect();
     if let Some(s) = widest {
-        let which = if shown.len() > 1 { "± largest residual std of a run" } else { "± residual std" };
-        entries.push((Sample::Band(0), format!("{which}, {} {}", significant(s, 2), units.reading)));
+        let which =
+            if shown.len() > 1 { "± largest residual std of a run" } else { "± residual std" };
+        entries
+            .push((Sample::Band(0), format!("{which}, {} {}", significant(s, 2), units.reading)));
     }
     let (keys, top) = legend(&entries, (LEFT - 10.0, WIDTH - 10.0), 6.0);
     let (top, bottom) = (top + 14.0, top + 14.0 + HEIGHT);
@@ -85,7 +88,7 @@ fn caption(shown: &[(usize, &Run)], all: usize, units: &Units) -> String {
         units.reading
     );
     if !stds.is_empty() {
-        text.push_str(&format!(" Standard deviations: {}.", typographic(&stds.join(", "))));
+        text.push_str(&format!(" Standard deviations: {}.", stds.join(", ")));
     }
     if shown.len() < all {
         text.push_str(&format!(" Shown: {} of {all} runs.", shown.len()));

@@ -105,7 +105,8 @@ fn half_range(p: &Panel<'_>, run: &Run, e: &Estimate) -> f64 {
         // Without uncertainty: what the second half of the run does.
         None => {
             let half = run.sequential.len() / 2;
-            range(run.sequential.iter().skip(half).map(|s| p.sequential(s))).map_or(0.0, |(lo, hi)| hi - lo)
+            range(run.sequential.iter().skip(half).map(|s| p.sequential(s)))
+                .map_or(0.0, |(lo, hi)| hi - lo)
         }
     };
     HALF_RANGE * own

@@ -16,7 +16,13 @@ pub(super) fn apply(page: &Page<'_>) -> Markup {
     let [lo, hi] = c.valid_range_lsb;
     let one = |v: f64| typographic(&fixed(v, 1));
     let c_of_n = match c.quantizer_offset.as_str() {
-        "half_sign" => Some(if c.example.code > 0 { "0.5" } else if c.example.code < 0 { "−0.5" } else { "0" }),
+        "half_sign" => Some(if c.example.code > 0 {
+            "0.5"
+        } else if c.example.code < 0 {
+            "−0.5"
+        } else {
+            "0"
+        }),
         "half" => Some("0.5"),
         "none" => Some("0"),
         _ => None,

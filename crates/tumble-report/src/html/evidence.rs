@@ -33,7 +33,9 @@ pub(super) fn error_level(page: &Page<'_>) -> Markup {
     };
     let runs = page.passport.runs.iter().take(MOST_RUNS);
     let mut rows: Vec<Vec<String>> = runs
-        .filter_map(|r| r.error_level_lsb.as_ref().map(|e| row(&r.name, e.before, e.after, e.after_held_out)))
+        .filter_map(|r| {
+            r.error_level_lsb.as_ref().map(|e| row(&r.name, e.before, e.after, e.after_held_out))
+        })
         .collect();
     if let Some(e) = page.passport.error_level_lsb.as_ref().filter(|_| rows.len() != 1) {
         rows.push(row("all runs", e.before, e.after, e.after_held_out));
@@ -73,7 +75,11 @@ pub(super) fn influence(page: &Page<'_>) -> Markup {
         }
     };
     let rows = [
-        row("Temperature", &influence.temperature, "no temperature was recorded, or it did not vary within the runs"),
+        row(
+            "Temperature",
+            &influence.temperature,
+            "no temperature was recorded, or it did not vary within the runs",
+        ),
         row("Signal level", &influence.signal_level, "the plan cannot tell it from the parameters"),
     ];
     let body = html! {
@@ -152,14 +158,14 @@ pub(super) fn runs(page: &Page<'_>) -> Markup {
     if p.runs.is_empty() {
         return html! {};
     }
-    let mut columns =
-        vec![text("Run"), text("Mounting"), numbers("Positions"), numbers("Angles")];
+    let mut columns = vec![text("Run"), text("Mounting"), numbers("n"), numbers("Angles")];
     let estimates = page.standing.has_estimates();
     if estimates {
         columns.extend([numbers("Bias"), numbers("Misalignment"), numbers("Scale error")]);
     }
-    columns.extend([numbers("Residual std"), numbers("Condition"), numbers("Settled at")]);
-    let rows: Vec<Vec<String>> = p.runs.iter().take(MOST_RUNS).map(|r| run_row(page, r, estimates)).collect();
+    columns.extend([numbers("s"), numbers("Cond."), numbers("Settled")]);
+    let rows: Vec<Vec<String>> =
+        p.runs.iter().take(MOST_RUNS).map(|r| run_row(page, r, estimates)).collect();
     let mut caption = if estimates {
         format!(
             "Estimate ± standard uncertainty (statistical): bias in {}, misalignment in {}, scale error in {}. ",
@@ -168,7 +174,11 @@ pub(super) fn runs(page: &Page<'_>) -> Markup {
     } else {
         String::new()
     };
-    caption.push_str(&format!("Residual standard deviation in {}.", page.units.reading));
+    caption.push_str(&format!(
+        "n: positions. s: residual standard deviation in {}. Cond.: condition number with columns of unit length. \
+         Settled: positions after which the estimate stayed.",
+        page.units.reading
+    ));
     if !page.standing.has_coefficients() && estimates {
         caption.push_str(" Evidence, not a result: not for use.");
     }
@@ -187,8 +197,8 @@ pub(super) fn runs(page: &Page<'_>) -> Markup {
 
 fn run_row(page: &Page<'_>, r: &Run, estimates: bool) -> Vec<String> {
     let mut row = vec![
-        shortened(&r.name, 40),
-        shortened(&r.mounting, 24),
+        shortened(&r.name, 20),
+        shortened(&r.mounting, 16),
         r.positions.to_string(),
         r.distinct_angles.to_string(),
     ];

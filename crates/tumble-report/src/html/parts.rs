@@ -69,7 +69,12 @@ pub(super) const fn numbers(heading: &'static str) -> Column {
 }
 
 /// A table; the first column heads its row.
-pub(super) fn table(class: &str, caption: &str, columns: &[Column], rows: &[Vec<String>]) -> Markup {
+pub(super) fn table(
+    class: &str,
+    caption: &str,
+    columns: &[Column],
+    rows: &[Vec<String>],
+) -> Markup {
     html! {
         div .scroll {
             table class=(class) {

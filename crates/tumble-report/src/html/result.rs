@@ -5,7 +5,9 @@ use tumble_io::passport::{Estimate, Passport, ResultSection};
 
 use super::parts::{degrees_of_freedom, maybe, number, numbers, table, text};
 use super::{Page, section};
-use crate::numbers::{NONE, correlation, interval, power_of_ten, rounded_to, typographic, value_with_uncertainty};
+use crate::numbers::{
+    NONE, correlation, interval, power_of_ten, rounded_to, typographic, value_with_uncertainty,
+};
 use crate::standing;
 use crate::summary::level;
 use crate::units::{Parameter, Unit};
@@ -99,12 +101,20 @@ fn row(l: &Line<'_>) -> Vec<String> {
         &l.unit,
     );
     let second = l.second.as_ref().zip(e.expanded_uncertainty).map(|(unit, u)| {
-        format!("{} {}", typographic(&value_with_uncertainty(unit.of(e.value), unit.of(u))), unit.name)
+        format!(
+            "{} {}",
+            typographic(&value_with_uncertainty(unit.of(e.value), unit.of(u))),
+            unit.name
+        )
     });
     let mut row = vec![l.name.clone()];
     row.extend(cells);
     row.push(maybe(e.coverage_factor, 3));
-    row.push(if e.standard_uncertainty.is_some() { degrees_of_freedom(e.degrees_of_freedom) } else { NONE.into() });
+    row.push(if e.standard_uncertainty.is_some() {
+        degrees_of_freedom(e.degrees_of_freedom)
+    } else {
+        NONE.into()
+    });
     row.push(unit);
     row.push(second.unwrap_or_default());
     row
@@ -158,7 +168,8 @@ fn correlations(p: &Passport) -> Markup {
         });
     }
     let conditions = p.runs.iter().filter_map(|r| r.condition_number);
-    let condition = span(conditions.clone().reduce(f64::min), conditions.reduce(f64::max), |v| number(v, 2));
+    let condition =
+        span(conditions.clone().reduce(f64::min), conditions.reduce(f64::max), |v| number(v, 2));
     html! {
         @if let Some(([a, b], lo, hi)) = strongest {
             @let r = span(Some(lo), Some(hi), |v| typographic(&correlation(v))).unwrap_or_default();

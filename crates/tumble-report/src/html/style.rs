@@ -35,7 +35,7 @@ caption{text-align:left;color:var(--muted);padding:0 0 .35rem;font-size:.88rem}
 th,td{padding:.28rem .8rem .28rem 0;text-align:left;vertical-align:top;border-bottom:1px solid var(--rule)}
 th:last-child,td:last-child{padding-right:0}
 thead th{border-bottom:1.5px solid var(--muted);vertical-align:bottom;font-weight:600;overflow-wrap:normal}
-tbody th{font-weight:600}
+tbody th{font-weight:600;white-space:nowrap}
 .n{text-align:right;font-variant-numeric:tabular-nums;white-space:nowrap}
 .q{white-space:nowrap}
 .main td,.main th{font-size:1rem}

@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 
 use tumble_core::estimate::{EstimateOptions, Method, Weights};
 use tumble_io::passport::Passport;
-use tumble_io::{CertifyError, CertifyOptions, Existing, OutputError, OutputFolder, Problem, Written, certify};
+use tumble_io::{
+    CertifyError, CertifyOptions, Existing, OutputError, OutputFolder, Problem, Written, certify,
+};
 
 use crate::cli::{CertifyArgs, MethodArg, WeightsArg};
 use crate::exit::{Exit, complain};
@@ -26,13 +28,21 @@ pub(crate) fn run(args: &CertifyArgs) -> Exit {
         let exit = match certify(folder, &options) {
             Ok(passport) => {
                 let out = args.out.as_ref().map(|out| {
-                    if several { out.join(subfolder(&passport, folder, &mut taken)) } else { out.clone() }
+                    if several {
+                        out.join(subfolder(&passport, folder, &mut taken))
+                    } else {
+                        out.clone()
+                    }
                 });
                 deliver(args, &passport, folder, out.as_deref(), several)
             }
             Err(e) => {
                 // The file is named inside the folder; which folder, only several make unclear.
-                complain(if several { format!("{}: {e}", folder.display()) } else { e.to_string() });
+                complain(if several {
+                    format!("{}: {e}", folder.display())
+                } else {
+                    e.to_string()
+                });
                 match &e {
                     CertifyError::Read(r) if is_failure(&r.problem) => Exit::Failure,
                     _ => Exit::Usage,
@@ -49,11 +59,14 @@ pub(crate) fn run(args: &CertifyArgs) -> Exit {
 
 /// Input that is missing is usage; input that breaks while it is read is a failure.
 fn is_failure(problem: &Problem) -> bool {
-    use std::io::ErrorKind::{InvalidData, InvalidInput, NotFound, PermissionDenied, UnexpectedEof};
+    use std::io::ErrorKind::{
+        InvalidData, InvalidInput, NotFound, PermissionDenied, UnexpectedEof,
+    };
     match problem {
-        Problem::Io(e) => {
-            !matches!(e.kind(), NotFound | PermissionDenied | InvalidData | InvalidInput | UnexpectedEof)
-        }
+        Problem::Io(e) => !matches!(
+            e.kind(),
+            NotFound | PermissionDenied | InvalidData | InvalidInput | UnexpectedEof
+        ),
         _ => false,
     }
 }
@@ -73,7 +86,13 @@ fn options(args: &CertifyArgs) -> Option<CertifyOptions> {
 }
 
 /// Prints and writes one passport.
-fn deliver(args: &CertifyArgs, passport: &Passport, folder: &Path, out: Option<&Path>, several: bool) -> Exit {
+fn deliver(
+    args: &CertifyArgs,
+    passport: &Passport,
+    folder: &Path,
+    out: Option<&Path>,
+    several: bool,
+) -> Exit {
     let verdict = verdict_exit(args, passport);
     let printed = match (args.quiet, args.json, several) {
         (true, _, _) => Ok(()),
@@ -83,7 +102,9 @@ fn deliver(args: &CertifyArgs, passport: &Passport, folder: &Path, out: Option<&
         (_, true, false) => {
             passport.to_json().map_err(std::io::Error::other).and_then(|text| print(&text))
         }
-        (_, false, true) => print(&format!("== {}\n{}\n", folder.display(), tumble_report::summary(passport))),
+        (_, false, true) => {
+            print(&format!("== {}\n{}\n", folder.display(), tumble_report::summary(passport)))
+        }
         (_, false, false) => print(&tumble_report::summary(passport)),
     };
     if let Err(e) = printed {
@@ -142,7 +163,11 @@ fn tell(out: &Path, written: &Written) {
         Written::New => eprintln!("wrote {}", out.join("passport.html").display()),
         Written::Same => eprintln!("{} holds this result already", out.display()),
         Written::Replaced { kept } => {
-            eprintln!("wrote {}; the old result is in {}", out.join("passport.html").display(), kept.display());
+            eprintln!(
+                "wrote {}; the old result is in {}",
+                out.join("passport.html").display(),
+                kept.display()
+            );
         }
     }
 }

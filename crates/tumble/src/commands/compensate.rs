@@ -52,13 +52,16 @@ pub(crate) fn run(args: &CompensateArgs) -> Exit {
 
 fn load(args: &CompensateArgs) -> Result<Compensator, (String, Exit)> {
     let name = args.passport.display();
-    let text = std::fs::read_to_string(&args.passport).map_err(|e| (format!("{name}: {e}"), Exit::Usage))?;
+    let text = std::fs::read_to_string(&args.passport)
+        .map_err(|e| (format!("{name}: {e}"), Exit::Usage))?;
     let passport = Passport::from_json(&text).map_err(|e| (format!("{name}: {e}"), Exit::Usage))?;
     let proof = if args.unproven { Proof::Waived } else { Proof::Required };
     compensator(&passport, proof).map_err(|e| {
         let exit = match e {
             CompensationRefused::Rejected { .. } => Exit::Rejected,
-            CompensationRefused::Indeterminate { .. } | CompensationRefused::Unproven => Exit::Indeterminate,
+            CompensationRefused::Indeterminate { .. } | CompensationRefused::Unproven => {
+                Exit::Indeterminate
+            }
             CompensationRefused::Unknown { .. } => Exit::Usage,
         };
         (format!("{name}: {e}"), exit)

@@ -2,7 +2,9 @@
 
 use tumble_core::simulate::{Preset, Truth};
 use tumble_core::{Code, Quantizer};
-use tumble_io::{Existing, OutputError, SimulationError, SimulationOptions, Written, write_simulation};
+use tumble_io::{
+    Existing, OutputError, SimulationError, SimulationOptions, Written, write_simulation,
+};
 
 use crate::cli::{PresetArg, QuantizerArg, SimulateArgs};
 use crate::exit::{Exit, complain};
@@ -15,7 +17,10 @@ pub(crate) fn run(args: &SimulateArgs) -> Exit {
         serial: args.serial.clone().unwrap_or_else(|| preset_serial(args.preset).into()),
         gzip: args.gz,
         averaged: args.averaged,
-        stated_angle_uncertainty_arcmin: args.stated_scatter.unwrap_or(truth.setting_scatter).arcmin(),
+        stated_angle_uncertainty_arcmin: args
+            .stated_scatter
+            .unwrap_or(truth.setting_scatter)
+            .arcmin(),
         scale_pair: args.scale_pair,
         existing: if args.replace { Existing::Replace } else { Existing::Keep },
     };
@@ -35,9 +40,12 @@ pub(crate) fn run(args: &SimulateArgs) -> Exit {
         Err(e) => {
             complain(&e);
             match e {
-                SimulationError::Truth(_) | SimulationError::Output(OutputError::Occupied { .. }) => Exit::Usage,
+                SimulationError::Truth(_)
+                | SimulationError::Output(OutputError::Occupied { .. }) => Exit::Usage,
                 SimulationError::Output(OutputError::Interrupted { .. }) => Exit::Interrupted,
-                SimulationError::Output(OutputError::Io { .. }) | SimulationError::Pack(_) => Exit::Failure,
+                SimulationError::Output(OutputError::Io { .. }) | SimulationError::Pack(_) => {
+                    Exit::Failure
+                }
             }
         }
     }

@@ -1,0 +1,227 @@
+//! The binary as a user meets it: exit codes, streams, folders.
+
+use std::io::Write as _;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+fn tumble(folder: &Path, args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_tumble")).args(args).current_dir(folder).output().unwrap()
+}
+
+fn with_input(folder: &Path, args: &[&str], input: &str) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_tumble"))
+        .args(args)
+        .current_dir(folder)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(input.as_bytes()).unwrap();
+    child.wait_with_output().unwrap()
+}
+
+fn out(o: &Output) -> String {
+    String::from_utf8(o.stdout.clone()).unwrap()
+}
+
+fn err(o: &Output) -> String {
+    String::from_utf8(o.stderr.clone()).unwrap()
+}
+
+fn code(o: &Output) -> i32 {
+    o.status.code().unwrap()
+}
+
+/// A folder with a short simulated experiment `demo`.
+fn demo(extra: &[&str]) -> tempfile::TempDir {
+    let dir = tempfile::tempdir().unwrap();
+    let args = [&["simulate", "demo", "--dwell", "1"], extra].concat();
+    let made = tumble(dir.path(), &args);
+    assert_eq!(code(&made), 0, "{}", err(&made));
+    dir
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bytes() {
+    let dir = demo(&["--gz", "--seed", "5"]);
+    let read = |f: &str| std::fs::read(dir.path().join("demo").join(f)).unwrap();
+    let first = (read("run-1.csv.gz"), read("truth.toml"), read("experiment.toml"));
+    let again = tumble(dir.path(), &["simulate", "demo", "--dwell", "1", "--gz", "--seed", "5"]);
+    assert_eq!(code(&again), 0);
+    assert!(err(&again).contains("already"), "{}", err(&again));
+    assert_eq!(first, (read("run-1.csv.gz"), read("truth.toml"), read("experiment.toml")));
+    let other = tumble(dir.path(), &["simulate", "demo", "--dwell", "1", "--gz", "--seed", "6"]);
+    assert_eq!(code(&other), 2, "{}", err(&other));
+    assert!(err(&other).contains("--replace"));
+}
+
+#[test]
+fn a_result_is_written_once_and_never_overwritten_in_silence() {
+    let dir = demo(&["--seed", "3"]);
+    let first = tumble(dir.path(), &["certify", "demo", "--out", "out"]);
+    assert_eq!(code(&first), 0, "{}", err(&first));
+    for file in [
+        "passport.json",
+        "passport.html",
+        "figures/residuals.svg",
+        "figures/settling.svg",
+        "figures/intervals.svg",
+        "figures/error-level.svg",
+    ] {
+        assert!(dir.path().join("out").join(file).exists(), "{file}");
+    }
+    let json = std::fs::read(dir.path().join("out/passport.json")).unwrap();
+    let again = tumble(dir.path(), &["certify", "demo", "--out", "out", "--quiet"]);
+    assert_eq!((code(&again), out(&again).as_str()), (0, ""));
+    let other = tumble(dir.path(), &["certify", "demo", "--out", "out", "--level", "0.9"]);
+    assert_eq!(code(&other), 2);
+    assert_eq!(std::fs::read(dir.path().join("out/passport.json")).unwrap(), json);
+    let replaced =
+        tumble(dir.path(), &["certify", "demo", "--out", "out", "--level", "0.9", "--replace"]);
+    assert_eq!(code(&replaced), 0);
+    assert_eq!(std::fs::read(dir.path().join("out.old-1/passport.json")).unwrap(), json);
+}
+
+#[test]
+fn exit_codes_of_the_contract() {
+    let dir = demo(&["--seed", "3"]);
+    let at = dir.path();
+    assert_eq!(code(&tumble(at, &["certify", "demo"])), 0);
+    // The paper's plan is usable with a warning.
+    assert_eq!(code(&tumble(at, &["certify", "demo", "--strict"])), 3);
+    assert_eq!(code(&tumble(at, &["simulate", "one", "--dwell", "1", "--runs", "1"])), 0);
+    let one = tumble(at, &["certify", "one"]);
+    assert_eq!(code(&one), 4);
+    assert!(out(&one).starts_with("INDETERMINATE"), "{}", out(&one));
+    assert_eq!(
+        code(&tumble(
+            at,
+            &["simulate", "bent", "--dwell", "1", "--angles", "-65:65:60", "--k2", "9000ug/g2"]
+        )),
+        0
+    );
+    let bent = tumble(at, &["certify", "bent", "--out", "bent-out"]);
+    assert_eq!(code(&bent), 1);
+    assert!(out(&bent).starts_with("REJECTED"));
+    assert!(at.join("bent-out/passport.html").exists(), "a rejected experiment gets a report");
+    for usage in [
+        &["certify", "nowhere"][..],
+        &["certify"],
+        &["certify", "demo", "--level", "95"],
+        &["certify", "demo", "--method", "paper", "--weights", "angle"],
+        &["simulate", "x", "--bias", "3"],
+        &["frobnicate"],
+    ] {
+        let o = tumble(at, usage);
+        assert_eq!(code(&o), 2, "{usage:?}: {}", err(&o));
+        assert!(out(&o).is_empty() && !err(&o).is_empty(), "{usage:?}");
+    }
+}
+
+#[test]
+fn several_folders_and_one_that_is_broken() {
+    let dir = demo(&["--seed", "3", "--serial", "A/1"]);
+    let at = dir.path();
+    std::fs::create_dir(at.join("broken")).unwrap();
+    std::fs::write(at.join("broken/experiment.toml"), "[sensor]\nmodle = \"x\"\n").unwrap();
+    assert_eq!(
+        code(&tumble(at, &["simulate", "twin", "--dwell", "1", "--seed", "4", "--serial", "A/1"])),
+        0
+    );
+    let o = tumble(at, &["certify", "demo", "broken", "twin", "--out", "all"]);
+    assert_eq!(code(&o), 2);
+    assert!(
+        err(&o).contains("broken: ") && err(&o).contains("line 2") && err(&o).contains("`model`"),
+        "{}",
+        err(&o)
+    );
+    assert!(at.join("all/A_1/passport.json").exists());
+    assert!(at.join("all/A_1-twin/passport.json").exists());
+}
+
+#[test]
+fn readings_become_accelerations_with_two_uncertainties() {
+    let dir = demo(&["--seed", "3", "--max-code", "2047", "--min-code", "-2048"]);
+    let at = dir.path();
+    assert_eq!(code(&tumble(at, &["certify", "demo", "--out", "out", "--quiet"])), 0);
+    let json: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(at.join("out/passport.json")).unwrap()).unwrap();
+    let c = &json["compensation"];
+    let (k, b) = (c["scale_factor"].as_f64().unwrap(), c["bias"].as_f64().unwrap());
+    let o = with_input(
+        at,
+        &["compensate", "out/passport.json"],
+        "t_s,code\n0.00,100\n0.02,-7\n0.04,2047\n",
+    );
+    assert_eq!(code(&o), 0, "{}", err(&o));
+    let text = out(&o);
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(lines[0], "t_s,code,acceleration_m_s2,u_calibration_m_s2,u_reading_m_s2");
+    let first: Vec<f64> = lines[1].split(',').map(|f| f.parse().unwrap()).collect();
+    assert!((first[2] - (k * 100.5 - b)).abs() < 1e-8, "{}", lines[1]);
+    assert!(first[3] > 0.0 && first[4] > k / 12f64.sqrt());
+    assert_eq!(lines[3], "0.04,2047,,,");
+    assert!(err(&o).contains("converter's end"), "{}", err(&o));
+    // The passport's own worked number.
+    let example = &c["example"];
+    let o = with_input(at, &["compensate", "out/passport.json"], &format!("{}\n", example["code"]));
+    let a: f64 = out(&o).lines().nth(1).unwrap().split(',').nth(1).unwrap().parse().unwrap();
+    assert!((a - example["acceleration_m_s2"].as_f64().unwrap()).abs() < 1e-8);
+    // A bad line is named; what came before it stays.
+    let o = with_input(at, &["compensate", "out/passport.json"], "1\n2\n=cmd\n");
+    assert_eq!((code(&o), out(&o).lines().count()), (2, 3));
+    assert!(err(&o).contains("line 3"), "{}", err(&o));
+}
+
+#[test]
+fn coefficients_without_proof_are_refused() {
+    let dir = demo(&["--runs", "1"]);
+    let at = dir.path();
+    assert_eq!(code(&tumble(at, &["certify", "demo", "--out", "out", "--quiet"])), 4);
+    let o = with_input(at, &["compensate", "out/passport.json"], "1\n");
+    assert_eq!(code(&o), 4);
+    assert!(out(&o).is_empty() && err(&o).contains("--unproven"), "{}", err(&o));
+    assert_eq!(code(&with_input(at, &["compensate", "out/passport.json", "--unproven"], "1\n")), 0);
+    let rejected = std::fs::read_to_string(at.join("out/passport.json"))
+        .unwrap()
+        .replace("\"indeterminate\"", "\"rejected\"");
+    std::fs::write(at.join("rejected.json"), rejected).unwrap();
+    assert_eq!(code(&with_input(at, &["compensate", "rejected.json", "--unproven"], "1\n")), 1);
+    std::fs::write(at.join("junk.json"), "{\"schema\": \"tumble-passport/9\"}").unwrap();
+    let junk = with_input(at, &["compensate", "junk.json"], "1\n");
+    assert_eq!(code(&junk), 2);
+    assert!(err(&junk).contains("tumble-passport/9"));
+}
+
+#[test]
+fn json_is_the_passport_and_nothing_else() {
+    let dir = demo(&["--seed", "3"]);
+    let o =
+        tumble(dir.path(), &["certify", "demo", "--json", "--id", "K-7", "--issued", "2026-11-23"]);
+    let json: serde_json::Value = serde_json::from_slice(&o.stdout).unwrap();
+    assert_eq!((json["id"].as_str(), json["issued"].as_str()), (Some("K-7"), Some("2026-11-23")));
+    assert!(o.stderr.is_empty());
+    let without = tumble(dir.path(), &["certify", "demo", "--json"]);
+    let json: serde_json::Value = serde_json::from_slice(&without.stdout).unwrap();
+    assert_eq!((json["id"].as_str(), json["issued"].as_str()), (Some(""), None));
+}
+
+#[test]
+fn an_averaged_record_and_an_upright_pair_are_read() {
+    let dir = demo(&[
+        "--averaged",
+        "--updown",
+        "--lean",
+        "20arcmin",
+        "--scale-pair",
+        "--angles",
+        "-60:60:13",
+    ]);
+    let o = tumble(dir.path(), &["certify", "demo", "--json"]);
+    assert_eq!(code(&o), 0, "{}", err(&o));
+    let json: serde_json::Value = serde_json::from_slice(&o.stdout).unwrap();
+    assert_eq!(json["runs"][0]["positions"], 15);
+    assert_eq!(json["inputs"].as_array().unwrap().len(), 8);
+    assert!(json["findings"].as_array().unwrap().iter().any(|f| f["id"] == "T0308"));
+}
