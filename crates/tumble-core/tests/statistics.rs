@@ -1,4 +1,5 @@
 //! Statistical claims, checked by simulation with a known truth. Seeds are fixed; TUMBLE_LONG=1 runs more.
+#![allow(clippy::unwrap_used)] // A test that cannot unwrap has failed.
 
 use tumble_core::assess::{Verdict, assess};
 use tumble_core::estimate::{EstimateOptions, Method, Parameter, Weights};

@@ -45,11 +45,15 @@ impl fmt::Display for Place {
     }
 }
 
-/// Text from outside, safe to print on a terminal: control characters become visible, long text is cut.
+/// Text from outside, safe to print on a terminal: control characters become visible.
+fn printable(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
+}
+
+/// [`printable`], and cut where it is long.
 pub(crate) fn visible(text: &str) -> String {
     const LONGEST: usize = 80;
-    let mut out: String =
-        text.chars().take(LONGEST).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
+    let mut out: String = printable(text).chars().take(LONGEST).collect();
     if text.chars().nth(LONGEST).is_some() {
         out.push('…');
     }
@@ -224,7 +228,13 @@ impl fmt::Display for Problem {
             }
             Self::Empty { what } => write!(f, "{what}"),
             Self::Columns { seen, what, remedy } => {
-                write!(f, "{what}; the header has {}; {remedy}", list(seen))
+                write!(
+                    f,
+                    "{}; the header has {}; {}",
+                    printable(what),
+                    list(seen),
+                    printable(remedy)
+                )
             }
             Self::Fields { seen, expected } => write!(
                 f,

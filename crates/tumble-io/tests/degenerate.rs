@@ -1,4 +1,5 @@
 //! Hopeless experiments: none is accepted, each says why and what to do.
+#![allow(clippy::unwrap_used)] // A test that cannot unwrap has failed.
 
 use std::fmt::Write as _;
 use std::path::Path;

@@ -1,4 +1,5 @@
 //! Reference data sets with answers computed by numpy, independent of this project.
+#![allow(clippy::unwrap_used)] // A test that cannot unwrap has failed.
 
 use std::path::{Path, PathBuf};
 

@@ -219,7 +219,7 @@ pub(crate) struct SimulateArgs {
     /// Dwells with the axis up and down at the start of each run.
     #[arg(long)]
     pub(crate) updown: bool,
-    /// Dwells with the axis up and down in a power-up of their own, as [scale].
+    /// Dwells with the axis up and down in a power-up of their own, as the table `scale`.
     #[arg(long)]
     pub(crate) scale_pair: bool,
     /// How the converter rounds.

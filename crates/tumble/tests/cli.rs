@@ -1,4 +1,5 @@
 //! The binary as a user meets it: exit codes, streams, folders.
+#![allow(clippy::unwrap_used)] // A test that cannot unwrap has failed.
 
 use std::io::Write as _;
 use std::path::Path;

@@ -1,4 +1,5 @@
 //! Commands in the documents print what the documents say.
+#![allow(clippy::unwrap_used)] // A test that cannot unwrap has failed.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

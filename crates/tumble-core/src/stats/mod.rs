@@ -97,7 +97,7 @@ mod tests {
     #[test]
     fn normal_tail_keeps_its_digits() {
         // mpmath, 30 digits.
-        assert!((normal_cdf(-6.0) / 9.865_876_450_376_981e-10 - 1.0).abs() < 1e-12);
+        assert!((normal_cdf(-6.0) / 9.865_876_450_377e-10 - 1.0).abs() < 1e-12);
         assert!((normal_cdf(1.0) - 0.841_344_746_068_542_9).abs() < 1e-15);
     }
 
