@@ -260,3 +260,39 @@ fn the_exact_form_is_right_for_large_errors_and_the_papers_is_not() {
         assert!(off.abs() > 20.0 * u, "paper {}: off by {off} only", p.name());
     }
 }
+
+/// Upright dwells in the run, leaning as stated: the 95 % interval of a run still covers 95 %.
+#[test]
+fn upright_dwells_that_lean_as_stated_keep_the_coverage() {
+    let n = if long() { 4000 } else { 500 };
+    for (plan, lean_arcmin) in [("paper", 30.0), ("paper", 90.0), ("-65:65:60", 30.0)] {
+        let base = Truth {
+            runs: 1,
+            upright_in_each_run: true,
+            vertical_lean: Angle::from_arcmin(lean_arcmin),
+            quantizer: tumble_core::Quantizer::Round,
+            angles_deg: parse_plan(plan).unwrap(),
+            ..quick(Preset::Paper1)
+        };
+        let truth = [base.bias_m_s2, 0.0, base.scale_error];
+        let mut covered = [0usize; 3];
+        for seed in 0..n {
+            let e = experiment(&Truth { seed: 900_000 + seed as u64, ..base.clone() });
+            let a = assess(&e, &EstimateOptions::default()).unwrap();
+            let e = a.runs[0].estimate.as_ref().unwrap();
+            let t = tumble_core::stats::student_factor(0.95, e.degrees_of_freedom as f64).unwrap();
+            for p in Parameter::ALL {
+                let u = e.standard_uncertainty(p).unwrap();
+                let error = e.values[p.index()].unwrap() - truth[p.index()];
+                covered[p.index()] += usize::from(error.abs() <= t * u);
+            }
+        }
+        for p in Parameter::ALL {
+            let coverage = covered[p.index()] as f64 / n as f64;
+            // The lean is one-sided (χ² with one degree of freedom), so a Gaussian interval is only near its level.
+            let limit = 4.0 * fraction_se(0.95, n) + 0.015;
+            println!("{plan} {lean_arcmin} {}: {coverage}", p.name());
+            assert!((coverage - 0.95).abs() < limit, "{plan}, {lean_arcmin}′, {}: {coverage:.4}", p.name());
+        }
+    }
+}

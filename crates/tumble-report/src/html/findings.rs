@@ -39,7 +39,6 @@ pub(super) fn findings(page: &Page<'_>) -> Markup {
                     }
                 }
             }
-            p .small { code { "tumble explain " (findings.first().map_or("T0101", |f| f.id.as_str())) } " tells more about a finding." }
         }
     };
     section("Findings", &body)

@@ -52,8 +52,8 @@ pub(super) fn provenance(page: &Page<'_>) -> Markup {
             ("Format", one_line(&p.schema)),
         ]))
         p .small {
-            "The same version on the same target, with these files and options, gives the same passport byte for byte: "
-            code { "tumble verify passport.json" } "."
+            "The same version on the same target, with these files and options, gives the same passport byte for byte: run "
+            code { "tumble certify" } " on them again."
         }
     };
     section("Inputs, options and software", &body)
