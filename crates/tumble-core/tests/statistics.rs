@@ -292,7 +292,11 @@ fn upright_dwells_that_lean_as_stated_keep_the_coverage() {
             // The lean is one-sided (χ² with one degree of freedom), so a Gaussian interval is only near its level.
             let limit = 4.0 * fraction_se(0.95, n) + 0.015;
             println!("{plan} {lean_arcmin} {}: {coverage}", p.name());
-            assert!((coverage - 0.95).abs() < limit, "{plan}, {lean_arcmin}′, {}: {coverage:.4}", p.name());
+            assert!(
+                (coverage - 0.95).abs() < limit,
+                "{plan}, {lean_arcmin}′, {}: {coverage:.4}",
+                p.name()
+            );
         }
     }
 }

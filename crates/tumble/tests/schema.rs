@@ -448,7 +448,13 @@ fn what_the_schema_lets_pass_can_be_read() {
     let published = Published::read();
     let (mut passed, mut refused) = (0, 0);
     let mut wrong = BTreeSet::new();
-    for (name, good) in passports().into_iter().take(3) {
+    for (name, mut good) in passports().into_iter().take(3) {
+        // One of each is enough, and the others take time.
+        good["runs"].as_array_mut().unwrap().truncate(1);
+        for list in ["sequential", "residuals"] {
+            good["runs"][0][list].as_array_mut().unwrap().truncate(1);
+        }
+        assert_eq!(published.refusal(&good), None, "{name}");
         let mut all = Vec::new();
         places(&good, "", &mut all);
         assert!(all.len() > 100, "only {} fields in {name}", all.len());

@@ -1,6 +1,7 @@
 //! Small dense linear algebra for least squares with few columns: orthogonal transformations only, so that
 //! narrow arcs (condition numbers of 1e5 and more) lose no more digits than they must.
 
+mod double;
 mod jacobi;
 mod matrix;
 mod triangular;
