@@ -62,6 +62,22 @@ pub(crate) fn rounded_to(values: &[f64], u: f64) -> Option<Rounded> {
     })
 }
 
+/// An uncertainty alone over a power of ten, to its own two significant digits.
+pub(crate) fn own_digits(u: f64, exponent: i32) -> String {
+    match power(u, DIGITS) {
+        Some(top) => at_place(u, top - (DIGITS - 1), exponent),
+        None => fixed(u, 0),
+    }
+}
+
+/// `v` without a power of ten, to the place of the second significant digit of `u`. `None` where that would be
+/// longer than people read.
+pub(crate) fn plain(v: f64, u: f64) -> Option<String> {
+    let place = power(u, DIGITS)? - (DIGITS - 1);
+    let readable = power(v, DOUBLE_DIGITS).is_none_or(|top| top - place < DOUBLE_DIGITS && top < LARGEST_POWER);
+    (v.is_finite() && readable && place >= -DOUBLE_DIGITS).then(|| at_place(v, place, 0))
+}
+
 /// `v` over ten to the `exponent`, rounded to ten to the `place`.
 fn at_place(v: f64, place: i32, exponent: i32) -> String {
     // Rounding in decimal text, from the exact value: multiplying by a power of ten first would round twice.
@@ -214,6 +230,18 @@ mod tests {
         ] {
             assert_eq!(value_with_uncertainty(value, u), text, "{value} ± {u}");
         }
+    }
+
+    #[test]
+    fn plain_numbers_and_lone_uncertainties() {
+        assert_eq!(plain(0.007_697_711_429, 1.5e-9).as_deref(), Some("0.0076977114"));
+        assert_eq!(plain(-0.007_637, 2e-5).as_deref(), Some("-0.007637"));
+        assert_eq!(plain(0.0, 0.02).as_deref(), Some("0.000"));
+        assert_eq!(plain(1.0, 0.0), None);
+        assert_eq!(plain(1.0, 1e-20), None);
+        assert_eq!(own_digits(1.52e-7, -3), "0.00015");
+        assert_eq!(own_digits(0.726, 0), "0.73");
+        assert_eq!(own_digits(0.0, 0), "0");
     }
 
     #[test]

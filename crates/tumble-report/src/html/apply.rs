@@ -5,7 +5,7 @@ use tumble_io::passport::{Compensation, Passport};
 
 use super::parts::{number, stated};
 use super::{Page, section};
-use crate::numbers::{fixed, rounded_to, typographic};
+use crate::numbers::{fixed, plain, typographic};
 use crate::standing::{self, Standing};
 use crate::words::{offset, one_line};
 
@@ -74,11 +74,8 @@ pub(super) fn apply(page: &Page<'_>) -> Markup {
 fn coefficients(p: &Passport, c: &Compensation) -> (String, String) {
     let result = p.result.as_ref();
     let shown = |v: f64, u: Option<f64>| {
-        u.and_then(|u| rounded_to(&[v], u / 100.0)).filter(|r| r.exponent == 0).map_or_else(
-            // Too many decimals for a plain number: all digits that a table would hold.
-            || stated(v),
-            |r| typographic(&r.texts.concat()),
-        )
+        // Without a usable uncertainty: all digits that a table would hold.
+        u.and_then(|u| plain(v, u / 100.0)).map_or_else(|| stated(v), |text| typographic(&text))
     };
     (
         shown(c.scale_factor, result.and_then(|r| r.scale_factor.standard_uncertainty)),

@@ -3,7 +3,7 @@
 use maud::{Markup, PreEscaped, html};
 use tumble_io::passport::{BudgetLine, InfluenceTest, Run};
 
-use super::parts::{degrees_of_freedom, maybe, number, numbers, table, text};
+use super::parts::{degrees_of_freedom, maybe, number, numbers, table, text, units};
 use super::{Page, section};
 use crate::numbers::{NONE, p_value, typographic, value_with_uncertainty};
 use crate::runs::MOST_RUNS;
@@ -29,7 +29,7 @@ pub(super) fn error_level(page: &Page<'_>) -> Markup {
         return html! {};
     }
     let row = |name: &str, before, after, held_out| {
-        vec![one_line(name), number(before, 2), number(after, 2), maybe(held_out, 2)]
+        vec![shortened(name, 24), number(before, 2), number(after, 2), maybe(held_out, 2)]
     };
     let runs = page.passport.runs.iter().take(MOST_RUNS);
     let mut rows: Vec<Vec<String>> = runs
@@ -43,7 +43,7 @@ pub(super) fn error_level(page: &Page<'_>) -> Markup {
     let body = html! {
         @if !rows.is_empty() {
             (table(
-                "narrow whole",
+                "narrow",
                 &format!(
                     "Root mean square error in {}. Held out: with the coefficients of the other runs, the honest level.",
                     page.units.reading
@@ -119,15 +119,15 @@ pub(super) fn budget(page: &Page<'_>) -> Markup {
     }
     let row = |b: &BudgetLine| {
         let name = match &b.mounting {
-            Some(m) => format!("{}, mounting {}", parameter(&b.parameter), one_line(m)),
-            None => one_line(parameter(&b.parameter)),
+            Some(m) => format!("{} ({})", shortened(parameter(&b.parameter), 24), shortened(m, 16)),
+            None => shortened(parameter(&b.parameter), 24),
         };
         vec![
             name,
             one_line(&b.quantity),
             number(b.standard_uncertainty, 2),
-            one_line(&unit(&b.unit)),
-            one_line(&b.distribution),
+            shortened(&unit(&b.unit), 16),
+            shortened(&b.distribution, 16),
             degrees_of_freedom(b.degrees_of_freedom),
             number(b.sensitivity, 3),
             number(b.contribution, 2),
@@ -141,8 +141,8 @@ pub(super) fn budget(page: &Page<'_>) -> Markup {
             text("Parameter"),
             text("Quantity"),
             numbers("u"),
-            text("Unit"),
-            text("Distribution"),
+            units("Unit"),
+            units("Distribution"),
             numbers("ν"),
             numbers("Sensitivity"),
             numbers("Contribution"),

@@ -54,19 +54,27 @@ pub(super) fn definitions(entries: &[(&str, String)]) -> Markup {
 /// A column of a table.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Column {
-    pub heading: &'static str,
-    pub numeric: bool,
+    heading: &'static str,
+    class: Option<&'static str>,
 }
 
 /// A column of text.
 pub(super) const fn text(heading: &'static str) -> Column {
-    Column { heading, numeric: false }
+    Column { heading, class: None }
 }
 
 /// A column of numbers.
 pub(super) const fn numbers(heading: &'static str) -> Column {
-    Column { heading, numeric: true }
+    Column { heading, class: Some("n") }
 }
+
+/// A column of short texts that stay on one line.
+pub(super) const fn units(heading: &'static str) -> Column {
+    Column { heading, class: Some("q") }
+}
+
+/// Tables up to this many rows are kept on one printed page.
+const WHOLE: usize = 14;
 
 /// A table; the first column heads its row.
 pub(super) fn table(
@@ -77,16 +85,16 @@ pub(super) fn table(
 ) -> Markup {
     html! {
         div .scroll {
-            table class=(class) {
+            table class={ (class) @if rows.len() <= WHOLE { " whole" } } {
                 @if !caption.is_empty() { caption { (caption) } }
                 thead { tr {
-                    @for c in columns { th scope="col" .n[c.numeric] { (c.heading) } }
+                    @for c in columns { th scope="col" class=[c.class] { (c.heading) } }
                 } }
                 tbody {
                     @for row in rows { tr {
                         @for (i, (cell, c)) in row.iter().zip(columns).enumerate() {
                             @if i == 0 { th scope="row" { (cell) } }
-                            @else { td .n[c.numeric] { (cell) } }
+                            @else { td class=[c.class] { (cell) } }
                         }
                     } }
                 }

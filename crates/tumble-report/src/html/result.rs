@@ -3,15 +3,15 @@
 use maud::{Markup, html};
 use tumble_io::passport::{Estimate, Passport, ResultSection};
 
-use super::parts::{degrees_of_freedom, maybe, number, numbers, table, text};
+use super::parts::{degrees_of_freedom, maybe, number, numbers, table, text, units};
 use super::{Page, section};
 use crate::numbers::{
-    NONE, correlation, interval, power_of_ten, rounded_to, typographic, value_with_uncertainty,
+    NONE, Rounded, correlation, interval, own_digits, power_of_ten, rounded_to, typographic, value_with_uncertainty,
 };
 use crate::standing;
 use crate::summary::level;
 use crate::units::{Parameter, Unit};
-use crate::words::{one_line, parameter, tie};
+use crate::words::{parameter, shortened, tie};
 
 /// A line of the result: name, estimate, unit, second unit.
 struct Line<'p> {
@@ -31,15 +31,15 @@ pub(super) fn result(page: &Page<'_>) -> Markup {
         (table(
             "main",
             &format!("u: standard uncertainty. U = k·u: expanded uncertainty at {level}. ν: effective degrees of freedom."),
-            &[text("Parameter"), numbers("Value"), numbers("± U"), numbers("u"), numbers("k"), numbers("ν"), text("Unit"),
-              text("In other units (± U)")],
+            &[text("Parameter"), numbers("Value"), numbers("± U"), numbers("u"), numbers("k"), numbers("ν"), units("Unit"),
+              units("In other units (± U)")],
             &main,
         ))
         (table(
             "",
             &format!("What the uncertainty is made of, and what the next power-up may bring ({level})."),
             &[text("Parameter"), numbers("u, statistical"), numbers("u, budget"), numbers("sd between runs"),
-              numbers("Next estimate"), text("Unit")],
+              numbers("Next estimate"), units("Unit")],
             &parts,
         ))
         (prediction_note(result))
@@ -60,7 +60,7 @@ fn lines<'p>(page: &Page<'p>, result: &'p ResultSection) -> Vec<Line<'p>> {
         out.push(line("Misalignment Δφ".into(), m, Parameter::Misalignment));
     }
     for m in &result.mountings {
-        let name = format!("Misalignment Δφ, mounting {}", one_line(&m.name));
+        let name = format!("Misalignment Δφ ({})", shortened(&m.name, 16));
         out.push(line(name, &m.misalignment, Parameter::Misalignment));
     }
     out.push(line("Scale error δk".into(), &result.scale_error, Parameter::ScaleError));
@@ -73,33 +73,25 @@ fn lines<'p>(page: &Page<'p>, result: &'p ResultSection) -> Vec<Line<'p>> {
     out
 }
 
-/// Numbers in one unit, rounded to the place of `u`; the power of ten goes to the unit.
-fn in_unit(values: &[Option<f64>], u: Option<f64>, unit: &Unit) -> (Vec<String>, String) {
-    let scaled: Vec<f64> = values.iter().flatten().map(|v| unit.of(*v)).collect();
-    let (texts, name) = match u.and_then(|u| rounded_to(&scaled, unit.of(u))) {
-        Some(r) if r.exponent == 0 => (r.texts, unit.name.clone()),
-        Some(r) => (r.texts, format!("{} {}", power_of_ten(r.exponent), unit.name)),
-        None => (scaled.iter().map(|v| number(*v, 6)).collect(), unit.name.clone()),
+/// Value, U and u in one unit, and the unit's name with their power of ten: value to the place of U, u to its own
+/// two digits.
+fn in_unit(e: &Estimate, unit: &Unit) -> ([String; 3], String) {
+    let value = unit.of(e.value);
+    let (expanded, u) = (e.expanded_uncertainty.map(|v| unit.of(v)), e.standard_uncertainty.map(|v| unit.of(v)));
+    let together = expanded.and_then(|expanded| rounded_to(&[value, expanded], expanded));
+    let Some(Rounded { texts, exponent }) = together else {
+        return ([number(value, 6), maybe(expanded, 2), maybe(u, 2)], unit.name.clone());
     };
-    let mut texts = texts.into_iter();
-    let cells = values
-        .iter()
-        .map(|v| match v {
-            Some(_) => typographic(&texts.next().unwrap_or_default()),
-            None => NONE.to_owned(),
-        })
-        .collect();
+    let u = u.map_or_else(|| NONE.to_owned(), |u| typographic(&own_digits(u, exponent)));
+    let mut texts = texts.iter().map(|t| typographic(t));
+    let cells = [texts.next().unwrap_or_default(), texts.next().unwrap_or_default(), u];
+    let name = if exponent == 0 { unit.name.clone() } else { format!("{} {}", power_of_ten(exponent), unit.name) };
     (cells, name)
 }
 
 fn row(l: &Line<'_>) -> Vec<String> {
     let e = l.estimate;
-    let (cells, unit) = in_unit(
-        &[Some(e.value), e.expanded_uncertainty, e.standard_uncertainty],
-        // u has the smaller second digit, and decides for all three.
-        e.standard_uncertainty.filter(|u| *u > 0.0).or(e.expanded_uncertainty),
-        &l.unit,
-    );
+    let (cells, unit) = in_unit(e, &l.unit);
     let second = l.second.as_ref().zip(e.expanded_uncertainty).map(|(unit, u)| {
         format!(
             "{} {}",
@@ -156,17 +148,11 @@ fn prediction_note(result: &ResultSection) -> Markup {
 
 /// Correlations and condition numbers of the runs, in words.
 fn correlations(p: &Passport) -> Markup {
-    let pairs = p.runs.iter().flat_map(|r| &r.correlations);
-    let mut strongest: Option<(&[String; 2], f64, f64)> = None;
-    for c in pairs.filter(|c| c.value.is_finite()) {
-        strongest = Some(match strongest {
-            Some((between, lo, hi)) if *between == c.between => {
-                (between, lo.min(c.value), hi.max(c.value))
-            }
-            Some((between, lo, hi)) if lo.abs().max(hi.abs()) >= c.value.abs() => (between, lo, hi),
-            _ => (&c.between, c.value, c.value),
-        });
-    }
+    let pairs = || p.runs.iter().flat_map(|r| &r.correlations).filter(|c| c.value.is_finite());
+    let strongest = pairs().max_by(|a, b| a.value.abs().total_cmp(&b.value.abs())).map(|strongest| {
+        let of_pair = || pairs().filter(|c| c.between == strongest.between).map(|c| c.value);
+        (&strongest.between, of_pair().fold(f64::INFINITY, f64::min), of_pair().fold(f64::NEG_INFINITY, f64::max))
+    });
     let conditions = p.runs.iter().filter_map(|r| r.condition_number);
     let condition =
         span(conditions.clone().reduce(f64::min), conditions.reduce(f64::max), |v| number(v, 2));
@@ -174,7 +160,7 @@ fn correlations(p: &Passport) -> Markup {
         @if let Some(([a, b], lo, hi)) = strongest {
             @let r = span(Some(lo), Some(hi), |v| typographic(&correlation(v))).unwrap_or_default();
             p {
-                "Correlations: " (parameter(a)) " and " (parameter(b)) " are " (tie(lo.abs().max(hi.abs())))
+                "Correlations: " (shortened(parameter(a), 24)) " and " (shortened(parameter(b), 24)) " are " (tie(lo.abs().max(hi.abs())))
                 " (r = " (r) " within a run). "
                 @if lo.abs().max(hi.abs()) >= 0.9 {
                     "An error in the one is made up for by the other: over the angles that were measured the compensated \
