@@ -2,7 +2,7 @@
 //!
 //! The data are made by others and stay outside this repository, in `../shared/data`; without them this is skipped
 //! aloud.
-#![allow(clippy::unwrap_used)] // A test that cannot unwrap has failed.
+#![allow(clippy::unwrap_used, clippy::print_stdout)] // A test that cannot unwrap has failed; figures are for people.
 
 use std::path::{Path, PathBuf};
 

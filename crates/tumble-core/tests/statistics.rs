@@ -1,5 +1,5 @@
 //! Statistical claims, checked by simulation with a known truth. Seeds are fixed; TUMBLE_LONG=1 runs more.
-#![allow(clippy::unwrap_used)] // A test that cannot unwrap has failed.
+#![allow(clippy::unwrap_used, clippy::print_stdout)] // A test that cannot unwrap has failed; figures are for people.
 
 use tumble_core::assess::{Verdict, assess};
 use tumble_core::estimate::{EstimateOptions, Method, Parameter, Weights};

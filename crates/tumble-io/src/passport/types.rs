@@ -90,9 +90,7 @@ pub struct Validity {
 /// One estimate with the fields that apply to it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
-    #[serde(default)]
     pub value: f64,
-    #[serde(default)]
     pub unit: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lsb: Option<f64>,
