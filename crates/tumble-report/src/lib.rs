@@ -12,6 +12,7 @@
 
 mod figure;
 mod html;
+mod merge;
 mod numbers;
 mod runs;
 mod sanitize;

@@ -74,7 +74,8 @@ pub(crate) fn own_digits(u: f64, exponent: i32) -> String {
 /// longer than people read.
 pub(crate) fn plain(v: f64, u: f64) -> Option<String> {
     let place = power(u, DIGITS)? - (DIGITS - 1);
-    let readable = power(v, DOUBLE_DIGITS).is_none_or(|top| top - place < DOUBLE_DIGITS && top < LARGEST_POWER);
+    let readable = power(v, DOUBLE_DIGITS)
+        .is_none_or(|top| top - place < DOUBLE_DIGITS && top < LARGEST_POWER);
     (v.is_finite() && readable && place >= -DOUBLE_DIGITS).then(|| at_place(v, place, 0))
 }
 

@@ -74,6 +74,15 @@ impl Standing {
         !matches!(self, Self::Rejected | Self::Unknown)
     }
 
+    /// What the page is, in a sentence.
+    pub fn what_it_is(self) -> &'static str {
+        if self.has_coefficients() {
+            "Calibration passport, not an accredited certificate."
+        } else {
+            "Neither a calibration passport nor an accredited certificate: it holds no coefficients."
+        }
+    }
+
     /// Heading of the page.
     pub fn heading(self) -> &'static str {
         match self {

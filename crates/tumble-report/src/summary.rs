@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use tumble_io::passport::{Estimate, Finding, Passport};
 
+use crate::merge::merged;
 use crate::numbers::{interval, significant, value_with_uncertainty};
 use crate::runs::mountings;
 use crate::standing::{GROUPS, Standing, bare_sentences, compensation, result};
@@ -91,24 +92,25 @@ fn numbers(out: &mut String, p: &Passport) {
     let Some(r) = result(p) else { return };
     let units = Units::of(p);
     let _ = writeln!(out, "\n  value ± expanded uncertainty ({})", level(p));
-    let mut line = |name: &str, parameter: Parameter, e: &Estimate| {
+    let line = |out: &mut String, name: &str, parameter: Parameter, e: &Estimate| {
         let second = units
             .second(parameter, p.nominal_scale_m_s2_per_lsb)
             .map_or_else(String::new, |u| format!("   = {}", value(e, &u)));
         row(out, name, &format!("{:<31}{second}", value(e, units.parameter(parameter))));
     };
-    line("bias", Parameter::Bias, &r.bias);
+    line(out, "bias", Parameter::Bias, &r.bias);
     if let Some(m) = &r.misalignment {
-        line("misalignment", Parameter::Misalignment, m);
+        line(out, "misalignment", Parameter::Misalignment, m);
     }
     for m in &r.mountings {
-        line(
-            &format!(" mounting {}", shortened(&m.name, 5)),
-            Parameter::Misalignment,
-            &m.misalignment,
+        let misalignment = value(&m.misalignment, units.parameter(Parameter::Misalignment));
+        row(
+            out,
+            "misalignment",
+            &format!("{misalignment:<31}   (mounting {})", shortened(&m.name, 16)),
         );
     }
-    line("scale error", Parameter::ScaleError, &r.scale_error);
+    line(out, "scale error", Parameter::ScaleError, &r.scale_error);
     row(out, "scale factor", &value(&r.scale_factor, &units.scale_factor));
     if let Some([low, high]) = r.bias.prediction_interval {
         row(
@@ -160,7 +162,8 @@ fn findings(out: &mut String, p: &Passport) {
         for sentence in bare {
             out.push_str(&wrapped("  ", sentence, 8, WIDTH));
         }
-        for (f, places) in merged(&of_group) {
+        for m in merged(of_group) {
+            let (f, places) = (m.finding, m.places());
             let place = if places.is_empty() {
                 String::new()
             } else {
@@ -184,16 +187,4 @@ fn findings(out: &mut String, p: &Passport) {
             out.push_str(&wrapped("        -> ", &as_sentence(&f.todo), 11, WIDTH));
         }
     }
-}
-
-/// Findings of one kind with the same remedy (mostly one a run) as one, with all their places.
-fn merged<'p>(findings: &[&'p Finding]) -> Vec<(&'p Finding, String)> {
-    let mut out: Vec<(&Finding, Vec<&str>)> = Vec::new();
-    for f in findings {
-        match out.iter_mut().find(|(g, _)| g.id == f.id && g.todo == f.todo) {
-            Some((_, places)) => places.push(&f.place),
-            None => out.push((f, vec![&f.place])),
-        }
-    }
-    out.into_iter().map(|(f, places)| (f, one_line(&places.join(", ")))).collect()
 }

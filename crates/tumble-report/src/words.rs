@@ -47,12 +47,17 @@ pub(crate) fn wrapped(lead: &str, text: &str, indent: usize, width: usize) -> St
     out
 }
 
-/// With a capital first letter and one full stop.
-pub(crate) fn as_sentence(text: &str) -> String {
+/// On one line, with a capital first letter.
+pub(crate) fn capitalized(text: &str) -> String {
     let text = one_line(text);
     let mut chars = text.chars();
     let first: String = chars.next().map(|c| c.to_uppercase().collect()).unwrap_or_default();
-    let text = format!("{first}{}", chars.as_str());
+    format!("{first}{}", chars.as_str())
+}
+
+/// With a capital first letter and one full stop.
+pub(crate) fn as_sentence(text: &str) -> String {
+    let text = capitalized(text);
     if text.is_empty() || text.ends_with(['.', '!', '?', '…']) {
         text
     } else {

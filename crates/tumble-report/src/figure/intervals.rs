@@ -130,6 +130,11 @@ fn panel(p: &Panel<'_>, top: f64) -> Option<(Markup, f64)> {
         @if let Some(Some([lo, hi])) = common {
             rect class="band s2" x=(c(x.at(lo))) width=(c((x.at(hi) - x.at(lo)).max(1.0)))
                 y=(c(first)) height=(c(runs as f64 * ROW)) {}
+            @for end in [lo, hi] {
+                // Edges show a band that is too narrow to see.
+                line class="edge s2" x1=(c(x.at(end))) x2=(c(x.at(end)))
+                    y1=(c(first)) y2=(c(first + runs as f64 * ROW)) {}
+            }
         }
         @for (i, row) in rows.iter().enumerate() {
             @let y = first + (i as f64 + 0.5) * ROW;

@@ -17,9 +17,10 @@ const LEFT: f64 = 84.0;
 /// Room at the right for the runs' final intervals.
 const FINAL: f64 = 78.0;
 const PANEL: f64 = 150.0;
-const GAP: f64 = 34.0;
-/// Half of the range in half-widths of a run's final interval: the first estimates are wild and are cut off.
-const HALF_RANGE: f64 = 5.0;
+const GAP: f64 = 40.0;
+/// The first estimates are wild and are cut off: the range holds what the estimates do from a third of the run on,
+/// but at least and at most so many half-widths of the run's final interval.
+const HALF_RANGE: (f64, f64) = (4.0, 8.0);
 
 /// Absent without estimates in a sequence, or where they may not be shown.
 pub(super) fn figure(passport: &Passport) -> Option<Figure> {
@@ -100,16 +101,17 @@ fn keys(shown: &[(usize, &Run)], settled: bool, banded: bool) -> (Markup, f64) {
 
 /// Half-width of what is drawn around a run's final estimate, in the panel's unit.
 fn half_range(p: &Panel<'_>, run: &Run, e: &Estimate) -> f64 {
-    let own = match e.interval {
-        Some([lo, hi]) => p.unit.of(hi - lo) / 2.0,
-        // Without uncertainty: what the second half of the run does.
-        None => {
-            let half = run.sequential.len() / 2;
-            range(run.sequential.iter().skip(half).map(|s| p.sequential(s)))
-                .map_or(0.0, |(lo, hi)| hi - lo)
+    let last = p.unit.of(e.value);
+    let third = run.positions / 3;
+    let late = run.sequential.iter().filter(|s| s.positions >= third);
+    let moved = range(late.map(|s| (p.sequential(s) - last).abs())).map_or(0.0, |(_, most)| most);
+    match e.interval {
+        Some([lo, hi]) => {
+            let own = (p.unit.of(hi - lo) / 2.0).abs();
+            moved.max(HALF_RANGE.0 * own).min(HALF_RANGE.1 * own)
         }
-    };
-    HALF_RANGE * own
+        None => 1.2 * moved,
+    }
 }
 
 fn panel(p: &Panel<'_>, x: &Axis, top: f64, index: usize) -> Option<Markup> {
@@ -129,7 +131,7 @@ fn panel(p: &Panel<'_>, x: &Axis, top: f64, index: usize) -> Option<Markup> {
         (x.bottom(top + PANEL, top, None))
         (y.left(LEFT, right, &y.title(p.parameter.name(), &p.unit.name)))
         @if p.title != p.parameter.name() {
-            (label(right - 4.0, top - 4.0, "panel end", &p.title))
+            (label(right - 4.0, top - 5.0, "panel end", &p.title))
         }
         g clip-path={ "url(#" (clip) ")" } {
             @if let Some([lo, hi]) = result {

@@ -3,35 +3,43 @@
 use maud::{Markup, html};
 
 use super::{Page, section};
+use crate::merge::merged;
 use crate::standing::severity_word;
 use crate::words::{as_sentence, one_line, shortened};
 
+/// Columns with the part of the width that suits their texts.
+const COLUMNS: [(&str, &str); 6] = [
+    ("Id", "c-id"),
+    ("Severity", "c-severity"),
+    ("Finding, where", "c-finding"),
+    ("Observed", "c-observed"),
+    ("Limit", "c-limit"),
+    ("What to do", "c-todo"),
+];
+
 pub(super) fn findings(page: &Page<'_>) -> Markup {
-    let findings = &page.passport.findings;
+    let findings = merged(&page.passport.findings);
     let body = html! {
         @if findings.is_empty() {
             p { "Nothing was found that is worth knowing." }
         } @else {
             div .scroll {
-                table {
+                table .fixed {
                     thead { tr {
-                        th scope="col" { "Id" }
-                        th scope="col" { "Severity" }
-                        th scope="col" { "Finding" }
-                        th scope="col" { "Observed" }
-                        th scope="col" { "Limit" }
-                        th scope="col" { "What to do" }
+                        @for (heading, class) in COLUMNS { th scope="col" class=(class) { (heading) } }
                     } }
                     tbody {
-                        @for f in findings {
+                        @for m in &findings {
+                            @let f = m.finding;
                             tr {
-                                th scope="row" .q { (shortened(&f.id, 12)) }
-                                td class=(class(&f.severity)) { (shortened(severity_word(&f.severity), 16)) }
+                                th scope="row" { (shortened(&f.id, 12)) }
+                                td class=(class(&f.severity)) { (shortened(severity_word(&f.severity), 12)) }
                                 td {
                                     (as_sentence(&f.title))
-                                    @if !f.place.is_empty() { br; span .small { (one_line(&f.place)) } }
+                                    @let places = m.places();
+                                    @if !places.is_empty() { br; span .small { (places) } }
                                 }
-                                td { (one_line(&f.observed)) }
+                                td { @for o in m.observed() { div { (o) } } }
                                 td { (one_line(&f.limit)) }
                                 td { (as_sentence(&f.todo)) }
                             }

@@ -5,22 +5,23 @@ use tumble_io::passport::{Finding, Passport};
 
 use super::Page;
 use super::parts::{definitions, stated};
+use crate::merge::merged;
 use crate::runs::mountings;
 use crate::standing::{self, Standing};
-use crate::words::{as_sentence, counted, method, one_line, quantizer};
+use crate::words::{as_sentence, capitalized, counted, method, one_line, quantizer};
 
 pub(super) fn front(page: &Page<'_>) -> Markup {
     let p = page.passport;
     html! {
         header {
             h1 { (page.standing.heading()) }
-            p .lead { "Calibration passport, not an accredited certificate." }
+            p .lead { (page.standing.what_it_is()) }
             div .pair {
                 (definitions(&[
                     ("Model", one_line(&p.sensor.model)),
                     ("Serial number", one_line(&p.sensor.serial)),
                     ("Axis", one_line(&p.sensor.axis)),
-                    ("Number", if p.id.is_empty() { "none given".into() } else { one_line(&p.id) }),
+                    ("Passport number", if p.id.is_empty() { "none given".into() } else { one_line(&p.id) }),
                     ("Issued", p.issued.as_deref().map_or_else(|| "no date given".into(), one_line)),
                     ("Measured", measured(p)),
                     ("Temperature", temperature(p)),
@@ -112,7 +113,7 @@ fn banner(page: &Page<'_>) -> Markup {
         Standing::Rejected | Standing::Unknown => "rejected",
         Standing::Unproven { .. } | Standing::Incomplete => "open",
     };
-    let warnings = page.passport.findings.iter().filter(|f| f.severity == "warning").count();
+    let warnings = merged(page.passport.findings.iter().filter(|f| f.severity == "warning")).len();
     html! {
         section class={ "banner " (class) } {
             p .verdict { (page.standing.word()) " — " (page.standing.meaning()) }
@@ -133,12 +134,12 @@ fn causes(p: &Passport, severity: &str, heading: &str) -> Markup {
         @if !found.is_empty() || !bare.is_empty() {
             h3 { (heading) }
             ul {
-                @for f in found {
+                @for m in merged(found) {
                     li {
-                        b { (as_sentence(&f.title)) }
-                        " "
-                        @if !f.place.is_empty() { (one_line(&f.place)) ": " }
-                        (as_sentence(&f.observed)) " What to do: " (one_line(&f.todo)) "."
+                        b { (capitalized(&m.finding.title)) }
+                        @let places = m.places();
+                        @if !places.is_empty() { " (" (places) ")" }
+                        ": " (m.observed().join("; ")) ". What to do: " (as_sentence(&m.finding.todo))
                     }
                 }
                 @for s in bare { li { (as_sentence(s)) } }

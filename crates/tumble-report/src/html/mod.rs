@@ -52,7 +52,7 @@ pub fn html(passport: &Passport) -> String {
                 meta name="color-scheme" content="light dark";
                 title { (page.standing.heading()) " – " (subject) }
                 // Numbers of the page go into margin boxes; the text is escaped for CSS.
-                style { (PreEscaped(style::style(&subject, &shortened(&passport.id, 60)))) }
+                style { (PreEscaped(style::style(page.standing, &subject, &shortened(&passport.id, 60)))) }
             }
             body {
                 (front::front(&page))

@@ -11,7 +11,7 @@ pub(super) fn note(page: &Page<'_>) -> Markup {
     let body = match page.standing {
         Standing::Accepted | Standing::Unproven { .. } => {
             let mut holds: Vec<String> = Vec::new();
-            for line in &p.budget {
+            for line in p.budget.iter().filter(|l| l.contribution > 0.0) {
                 let quantity = one_line(&line.quantity);
                 if !holds.contains(&quantity) {
                     holds.push(quantity);
@@ -20,9 +20,9 @@ pub(super) fn note(page: &Page<'_>) -> Markup {
             html! {
                 p {
                     "The expanded uncertainty U states an interval value ± U that is expected to hold the true value of the "
-                    "parameter with a probability of " (crate::summary::level(p)) " (JCGM 100). It holds "
+                    "parameter with a probability of " (crate::summary::level(p)) " (JCGM 100). It holds: "
                     @if holds.is_empty() { "the scatter of the readings" } @else { (listed(&holds)) }
-                    ", and nothing else. Systematic errors of the table (scale and eccentricity of the dial, tilt of its axis), the \
+                    "; nothing else. Systematic errors of the table (scale and eccentricity of the dial, tilt of its axis), the \
                      lean of the sensor out of the plane of tilt, ageing, transport, and temperatures outside the range that was \
                      measured are not in it unless the budget names them."
                 }

@@ -29,7 +29,7 @@ pub(super) fn provenance(page: &Page<'_>) -> Markup {
     let body = html! {
         @if !p.inputs.is_empty() {
             div .scroll {
-                table {
+                table .files {
                     thead { tr { th scope="col" { "File" } th scope="col" { "SHA-256" } } }
                     tbody {
                         @for i in &p.inputs {

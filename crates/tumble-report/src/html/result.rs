@@ -6,7 +6,8 @@ use tumble_io::passport::{Estimate, Passport, ResultSection};
 use super::parts::{degrees_of_freedom, maybe, number, numbers, table, text, units};
 use super::{Page, section};
 use crate::numbers::{
-    NONE, Rounded, correlation, interval, own_digits, power_of_ten, rounded_to, typographic, value_with_uncertainty,
+    NONE, Rounded, correlation, interval, own_digits, power_of_ten, rounded_to, typographic,
+    value_with_uncertainty,
 };
 use crate::standing;
 use crate::summary::level;
@@ -77,7 +78,8 @@ fn lines<'p>(page: &Page<'p>, result: &'p ResultSection) -> Vec<Line<'p>> {
 /// two digits.
 fn in_unit(e: &Estimate, unit: &Unit) -> ([String; 3], String) {
     let value = unit.of(e.value);
-    let (expanded, u) = (e.expanded_uncertainty.map(|v| unit.of(v)), e.standard_uncertainty.map(|v| unit.of(v)));
+    let (expanded, u) =
+        (e.expanded_uncertainty.map(|v| unit.of(v)), e.standard_uncertainty.map(|v| unit.of(v)));
     let together = expanded.and_then(|expanded| rounded_to(&[value, expanded], expanded));
     let Some(Rounded { texts, exponent }) = together else {
         return ([number(value, 6), maybe(expanded, 2), maybe(u, 2)], unit.name.clone());
@@ -85,7 +87,11 @@ fn in_unit(e: &Estimate, unit: &Unit) -> ([String; 3], String) {
     let u = u.map_or_else(|| NONE.to_owned(), |u| typographic(&own_digits(u, exponent)));
     let mut texts = texts.iter().map(|t| typographic(t));
     let cells = [texts.next().unwrap_or_default(), texts.next().unwrap_or_default(), u];
-    let name = if exponent == 0 { unit.name.clone() } else { format!("{} {}", power_of_ten(exponent), unit.name) };
+    let name = if exponent == 0 {
+        unit.name.clone()
+    } else {
+        format!("{} {}", power_of_ten(exponent), unit.name)
+    };
     (cells, name)
 }
 
@@ -149,10 +155,15 @@ fn prediction_note(result: &ResultSection) -> Markup {
 /// Correlations and condition numbers of the runs, in words.
 fn correlations(p: &Passport) -> Markup {
     let pairs = || p.runs.iter().flat_map(|r| &r.correlations).filter(|c| c.value.is_finite());
-    let strongest = pairs().max_by(|a, b| a.value.abs().total_cmp(&b.value.abs())).map(|strongest| {
-        let of_pair = || pairs().filter(|c| c.between == strongest.between).map(|c| c.value);
-        (&strongest.between, of_pair().fold(f64::INFINITY, f64::min), of_pair().fold(f64::NEG_INFINITY, f64::max))
-    });
+    let strongest =
+        pairs().max_by(|a, b| a.value.abs().total_cmp(&b.value.abs())).map(|strongest| {
+            let of_pair = || pairs().filter(|c| c.between == strongest.between).map(|c| c.value);
+            (
+                &strongest.between,
+                of_pair().fold(f64::INFINITY, f64::min),
+                of_pair().fold(f64::NEG_INFINITY, f64::max),
+            )
+        });
     let conditions = p.runs.iter().filter_map(|r| r.condition_number);
     let condition =
         span(conditions.clone().reduce(f64::min), conditions.reduce(f64::max), |v| number(v, 2));

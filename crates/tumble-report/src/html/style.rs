@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use crate::standing::Standing;
+
 /// Screen and paper.
 const SHEET: &str = r#"
 :root{--paper:#fff;--ink:#1b1f23;--muted:#4a525a;--rule:#c9cfd4;--soft:#f3f5f6;--link:#0072b2;
@@ -20,11 +22,12 @@ p{margin:.5rem 0;max-width:48rem}
 .lead{color:var(--muted);margin:.2rem 0 1.2rem}
 dl{display:grid;grid-template-columns:max-content 1fr;gap:.15rem 1.25rem;margin:.5rem 0}
 dt{color:var(--muted)}dd{margin:0}
-.pair{display:grid;grid-template-columns:1fr 1fr;gap:0 2.5rem}
+.pair{display:grid;grid-template-columns:1fr 1fr;gap:0 2.5rem;align-items:start}
 .banner{border:2px solid currentColor;padding:.8rem 1.1rem;margin:1.4rem 0}
 .banner>*{color:var(--ink)}
-.banner .verdict{font-size:1.25rem;font-weight:700;color:inherit;margin:0}
+.banner .verdict{font-size:1.25rem;font-weight:700;color:inherit;margin:0;max-width:none}
 .banner .loud{font-size:2.1rem;line-height:1.15;font-weight:800;color:inherit;margin:.5rem 0;max-width:none}
+.banner>:last-child{margin-bottom:0}
 .banner h3{margin:.8rem 0 .2rem}.banner ul{margin:.2rem 0;padding-left:1.2rem}.banner li{margin:.35rem 0}
 .accepted{color:var(--good);background:var(--good-soft)}
 .rejected{color:var(--bad);background:var(--bad-soft)}
@@ -36,8 +39,12 @@ th,td{padding:.28rem .8rem .28rem 0;text-align:left;vertical-align:top;border-bo
 th:last-child,td:last-child{padding-right:0}
 thead th{border-bottom:1.5px solid var(--muted);vertical-align:bottom;font-weight:600;overflow-wrap:normal}
 tbody th{font-weight:600;white-space:nowrap}
+.files th{white-space:normal}
 .n{text-align:right;font-variant-numeric:tabular-nums;white-space:nowrap}
 .q{white-space:nowrap}
+.n+.q,.n+td{padding-left:.5rem}
+.fixed{table-layout:fixed;min-width:44rem}
+.c-id{width:8%}.c-severity{width:10%}.c-finding{width:20%}.c-observed{width:22%}.c-limit{width:15%}.c-todo{width:25%}
 .main td,.main th{font-size:1rem}
 .main .value{font-weight:700}
 .narrow{width:auto;min-width:24rem}
@@ -65,7 +72,9 @@ th,td{padding:2pt 6pt 2pt 0}
 .digest{font-size:7pt}
 h2,h3{break-after:avoid}
 figure,.banner,.formula,dl,tr,.whole{break-inside:avoid}
-figure svg{max-width:160mm;max-height:205mm}
+figure svg{max-width:138mm;max-height:150mm}
+figure{margin:8pt 0}
+.fixed{min-width:0}
 figcaption,.small,caption{font-size:8.2pt}
 thead{display:table-header-group}
 p{orphans:3;widows:3}
@@ -73,8 +82,9 @@ p{orphans:3;widows:3}
 "#;
 
 /// The style sheet, with sensor and number in the margins of every printed page.
-pub(super) fn style(subject: &str, id: &str) -> String {
-    let mut margin = String::from("Calibration passport");
+pub(super) fn style(standing: Standing, subject: &str, id: &str) -> String {
+    let mut margin =
+        String::from(if standing.has_coefficients() { "Calibration passport" } else { "Report" });
     for part in [subject, id] {
         if !part.is_empty() {
             margin.push_str(" · ");

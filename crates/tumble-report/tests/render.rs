@@ -1,0 +1,159 @@
+//! What each kind of passport shows, and what it must not.
+
+mod common;
+
+use tumble_report::{figures, html, summary};
+
+/// Words that stand only beside coefficients.
+const COEFFICIENTS: [&str; 8] = [
+    "scale factor",
+    "Scale factor",
+    "next power-up",
+    "± U",
+    "How to apply it",
+    "k* =",
+    "tumble compensate",
+    "expanded uncertainty",
+];
+
+#[test]
+fn accepted_shows_everything() {
+    let p = common::accepted();
+    assert_eq!(p.verdict, "accepted");
+    let text = summary(&p);
+    assert!(text.starts_with("ACCEPTED"), "{text}");
+    assert!(text.contains("ADXL203, serial 3, axis X") && text.contains("next power-up"), "{text}");
+    assert!(text.lines().all(|l| l.chars().count() <= 80), "{text}");
+    assert!(!text.contains('−'), "signs are ASCII in the terminal: {text}");
+
+    let names: Vec<_> = figures(&p).iter().map(|f| f.name).collect();
+    assert_eq!(names, ["settling", "residuals", "intervals", "error-level"]);
+
+    let page = html(&p);
+    for words in [
+        "Calibration passport, not an accredited certificate.",
+        "ACCEPTED — ",
+        "almost inseparable under this plan",
+        "for the next estimate",
+        "a = k* · (N + c(N)) − Δa",
+        "tumble compensate passport.json",
+        "Held out: with the coefficients of the other runs",
+        "not assessed: no temperature was recorded",
+        "SHA-256",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+    for input in &p.inputs {
+        assert!(page.contains(&input.sha256));
+    }
+    for finding in &p.findings {
+        assert!(page.contains(&finding.id), "{}", finding.id);
+    }
+}
+
+#[test]
+fn rejected_shows_no_coefficients() {
+    let p = common::rejected();
+    assert_eq!(p.verdict, "rejected");
+    // A tampered passport: the verdict decides, not the presence of the numbers.
+    let mut tampered = common::accepted();
+    tampered.verdict = "rejected".into();
+    let mut unknown = common::accepted();
+    unknown.verdict = "fine".into();
+    for p in [&p, &tampered, &unknown] {
+        let (text, page) = (summary(p), html(p));
+        let names: Vec<_> = figures(p).iter().map(|f| f.name).collect();
+        assert_eq!(names, ["residuals"]);
+        for words in COEFFICIENTS {
+            assert!(!text.contains(words), "summary: {words}\n{text}");
+            assert!(!page.contains(words), "html: {words}");
+        }
+        for run in &p.runs {
+            let bias = run.estimates.bias.as_ref().map_or(0.0, |e| e.value);
+            let digits = format!("{bias:.4}").replace('-', "");
+            assert!(
+                !page.contains(&digits) && !text.contains(&digits),
+                "{digits} is a coefficient"
+            );
+        }
+    }
+    assert!(summary(&p).starts_with("REJECTED"));
+    assert!(html(&p).contains("Report: why there is no calibration passport"));
+    assert!(html(&p).contains("T0112"));
+}
+
+#[test]
+fn one_run_says_so_in_large_letters() {
+    let p = common::one_run();
+    assert_eq!(p.verdict, "indeterminate");
+    assert!(html(&p).contains(r#"<p class="loud">One run: reproducibility not shown</p>"#));
+    assert!(html(&p).contains("--unproven"));
+    assert!(summary(&p).contains("ONE RUN: REPRODUCIBILITY NOT SHOWN"));
+    let held_out = &figures(&p)[3];
+    assert!(held_out.caption.contains("no held-out level"), "{}", held_out.caption);
+}
+
+#[test]
+fn incomplete_says_what_is_missing() {
+    let p = common::least();
+    let (text, page) = (summary(&p), html(&p));
+    assert!(figures(&p).is_empty());
+    assert!(
+        text.starts_with("INDETERMINATE") && text.contains("there is no run on the table"),
+        "{text}"
+    );
+    assert!(page.contains("There is no run on the table."));
+    for words in COEFFICIENTS {
+        assert!(!text.contains(words) && !page.contains(words), "{words}");
+    }
+}
+
+#[test]
+fn every_mounting_has_its_misalignment() {
+    let p = common::two_mountings();
+    assert_eq!(p.result.as_ref().unwrap().mountings.len(), 2);
+    let page = html(&p);
+    assert!(page.contains("Misalignment Δφ (A)") && page.contains("Misalignment Δφ (B)"));
+    assert!(summary(&p).contains("(mounting B)"));
+    let intervals = figures(&p).into_iter().find(|f| f.name == "intervals").unwrap();
+    assert!(intervals.svg.contains("Misalignment, mounting A"));
+}
+
+#[test]
+fn numbers_that_cannot_be_shown_are_said_to_be() {
+    let mut p = common::accepted();
+    p.nominal_scale_m_s2_per_lsb = f64::NAN;
+    assert!(summary(&p).starts_with("INDETERMINATE"));
+    assert!(html(&p).contains("is not finite"));
+    assert!(figures(&p).is_empty());
+}
+
+#[test]
+fn figures_share_no_class_and_no_id() {
+    let figures = figures(&common::accepted());
+    for f in &figures {
+        let scope = format!("tumble-{}", f.name);
+        let style = f.svg.split("<style>").nth(1).and_then(|s| s.split("</style>").next()).unwrap();
+        for selectors in style.split('}').filter_map(|r| r.rsplit_once('{').map(|(s, _)| s)) {
+            let selectors = selectors.rsplit('{').next().unwrap();
+            assert!(
+                selectors.split(',').all(|s| s.starts_with(&format!(".{scope} "))),
+                "{selectors}"
+            );
+        }
+        for id in f.svg.split(" id=\"").skip(1) {
+            assert!(id.starts_with(&scope), "{id:.40}");
+        }
+        assert!(style.contains("prefers-color-scheme:dark"));
+        assert!(
+            f.svg.contains("role=\"img\"") && f.svg.contains("<title") && f.svg.contains("<desc")
+        );
+    }
+}
+
+#[test]
+fn the_same_passport_gives_the_same_bytes() {
+    let p = common::accepted();
+    assert_eq!(html(&p), html(&p));
+    assert_eq!(figures(&p), figures(&p));
+}
