@@ -1,5 +1,6 @@
 //! Passports to render, made by the pipeline itself, and a strict reader of markup.
 
+#![allow(clippy::unwrap_used)] // A test that cannot unwrap has failed.
 #![allow(dead_code)] // Each test file uses its part.
 
 use std::path::{Path, PathBuf};
