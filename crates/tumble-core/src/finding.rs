@@ -126,6 +126,8 @@ finding_kinds! {
     FewRuns = "T0209", Note, "few runs: the intervals are wide";
     /// Every run reaches the target, the pooled value does not.
     RunsTooFew = "T0210", Missing, "more runs are needed";
+    /// The same errors in every run: the mean of runs does not average them out.
+    ErrorsRepeat = "T0211", Warning, "the positions' errors repeat from run to run";
     /// Table better or worse than stated.
     TableWorse = "T0301", Warning, "the positions scatter more than the stated angle uncertainty";
     /// Table better than stated.

@@ -181,8 +181,11 @@ impl Readings {
     ///
     /// **Model** the mean of a quantized Gaussian is off by a periodic function of the analogue value; over all
     /// phases its variance is `Σ_k exp(−4π²k²σ²) / (2π²k²)` LSB²: 1/12 without noise, 2e-6 at σ = 0.5 LSB.
+    ///
+    /// `code_variance_lsb2` is the variance of single codes within dwells, pooled over the run: one quiet dwell shows
+    /// anything between 0 and 1/4, whatever its noise.
     #[must_use]
-    pub fn variance_of_mean(&self, quantizer: Quantizer) -> f64 {
+    pub fn variance_of_mean(&self, quantizer: Quantizer, code_variance_lsb2: f64) -> f64 {
         let variance = self.std().map_or(0.0, |s| s * s);
         let white = variance / self.samples().max(1) as f64;
         let blocks = match self {
@@ -195,7 +198,7 @@ impl Readings {
         let resolution = match quantizer {
             Quantizer::None => 0.0,
             // Codes' variance holds 1/12 of quantization itself (Sheppard).
-            _ => undithered_variance((variance - 1.0 / 12.0).max(0.0)),
+            _ => undithered_variance((code_variance_lsb2 - 1.0 / 12.0).max(0.0)),
         };
         white.max(blocks.unwrap_or(0.0)) + resolution
     }

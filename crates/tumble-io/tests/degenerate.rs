@@ -214,6 +214,10 @@ fn cases() -> Vec<Case> {
             ..Case::new("scale in mm/s²", wide(), "rejected", "T0103", "nominal_scale")
         },
         Case {
+            nominal_scale: 1.0 / K0,
+            ..Case::new("scale upside down", wide(), "rejected", "T0103", "nominal_scale")
+        },
+        Case {
             nominal_scale: K0 * 4.0,
             ..Case::new("another range of the sensor", wide(), "rejected", "T0103", "range")
         },

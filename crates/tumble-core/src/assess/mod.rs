@@ -3,12 +3,14 @@
 mod error_level;
 mod influence;
 mod pool;
+mod repeat;
 mod result;
 mod verdict;
 
 pub use error_level::{ErrorLevel, RunErrorLevel, error_level};
 pub use influence::{Influence, InfluenceTest, influence};
 pub use pool::{Interval, PooledParameter, in_lsb, pool, scale_factor};
+pub use repeat::repeated_share;
 pub use result::{BudgetLine, CompensationResult, compensation_result};
 pub use verdict::{Verdict, may_carry_result, verdict};
 
@@ -123,6 +125,7 @@ pub fn assess(
             options.level,
         ));
     }
+    findings.extend(repeated_share(&runs).map(repeat::finding));
     let structure = structure_findings(&runs, &mut findings);
     let influence = influence(&runs, k0.value_m_s2_per_lsb, options.level);
     findings.extend(influence.findings());
@@ -263,7 +266,9 @@ fn structure_findings(runs: &[RunAssessment], findings: &mut Vec<Finding>) -> Op
         return None;
     }
     let (together, found) = judge::structure(&full, 1);
-    if found.is_empty() && full.len() > 1 {
+    // Errors that repeat are not independent evidence: then each run must show the structure by itself.
+    let pooling_counts = repeated_share(runs).is_none();
+    if full.len() > 1 && (found.is_empty() || !pooling_counts) {
         findings.extend(full.iter().flat_map(|one| judge::structure(&[*one], full.len()).1));
     } else {
         findings.extend(found);

@@ -40,7 +40,8 @@ pub struct PooledParameter {
     pub runs: usize,
     /// Mean of the runs.
     pub value: f64,
-    /// Standard uncertainty from scatter: `s/√k` of the runs; with one run, that run's own.
+    /// Standard uncertainty from scatter: `s/√k` of the runs, and what of a run's own repeats in all of them; with
+    /// one run, that run's own.
     pub u_statistical: f64,
     /// Standard uncertainty from what scatter does not show (gravity).
     pub u_budget: f64,
@@ -78,6 +79,7 @@ pub fn pool(runs: &[RunAssessment], gravity: &Gravity, level: f64) -> Vec<Pooled
         .filter_map(|r| r.estimate.as_ref().map(|e| (r, e)))
         .filter(|(_, e)| e.covariance.is_some())
         .collect();
+    let repeated = super::repeated_share(runs).unwrap_or(0.0);
     let mut mountings: Vec<&str> = Vec::new();
     for (r, _) in &full {
         if !mountings.contains(&r.mounting.as_str()) {
@@ -96,7 +98,7 @@ pub fn pool(runs: &[RunAssessment], gravity: &Gravity, level: f64) -> Vec<Pooled
                 .filter(|(r, _)| group.is_none_or(|m| r.mounting == m))
                 .map(|(_, e)| *e)
                 .collect();
-            let pooled = pool_one(parameter, &members, gravity, level);
+            let pooled = pool_one(parameter, &members, repeated, gravity, level);
             out.extend(pooled.map(|p| PooledParameter { mounting: group.map(str::to_owned), ..p }));
         }
     }
@@ -106,6 +108,7 @@ pub fn pool(runs: &[RunAssessment], gravity: &Gravity, level: f64) -> Vec<Pooled
 fn pool_one(
     parameter: Parameter,
     estimates: &[&Estimate],
+    repeated_share: f64,
     gravity: &Gravity,
     level: f64,
 ) -> Option<PooledParameter> {
@@ -119,7 +122,18 @@ fn pool_one(
     let k = values.len();
     let between_run_sd = sample_std(&values);
     let (u_statistical, dof) = match between_run_sd {
-        Some(s) => (s / (k as f64).sqrt(), (k - 1) as f64),
+        Some(s) => {
+            // What repeats is as uncertain as in one run, whatever the number of runs.
+            let own: Vec<f64> = estimates
+                .iter()
+                .filter_map(|e| e.standard_uncertainty(parameter))
+                .map(|u| u * u)
+                .collect();
+            let common = (repeated_share * mean(&own).unwrap_or(0.0)).sqrt();
+            let spread = s / (k as f64).sqrt();
+            let u = spread.hypot(common);
+            (u, welch_satterthwaite(u, spread, (k - 1) as f64))
+        }
         None => {
             let only = estimates.first()?;
             (only.standard_uncertainty(parameter)?, only.degrees_of_freedom as f64)

@@ -54,6 +54,9 @@ pub fn equations(
     weights: Weights,
 ) -> Vec<Equation> {
     let sigma_phi = setting.bench.angle_uncertainty.map_or(0.0, |a| a.rad());
+    let variances: Vec<f64> =
+        positions.iter().filter_map(|p| p.readings.std()).map(|s| s * s).collect();
+    let code_variance = crate::stats::mean(&variances).unwrap_or(0.0);
     let mut eqs: Vec<Equation> = positions
         .iter()
         .filter_map(|p| {
@@ -65,7 +68,7 @@ pub fn equations(
                 analogue_lsb: setting.quantizer.analogue_lsb(mean),
                 dwell_variance: match weights {
                     Weights::Equal => 1.0,
-                    Weights::Angle => p.readings.variance_of_mean(setting.quantizer),
+                    Weights::Angle => p.readings.variance_of_mean(setting.quantizer, code_variance),
                 },
                 angle_uncertainty_rad: match weights {
                     Weights::Equal => 0.0,

@@ -63,7 +63,9 @@ pub fn plausible(
                 "9.8 or 1/9.8 is g taken for m/s²".into(),
                 "give nominal_scale in m/s² per LSB (multiply g per LSB by 9.80665)",
             ));
-        } else if surely_beyond(Parameter::ScaleError, dk, SCALE_ERROR_LIMIT) {
+        } else if surely_beyond(Parameter::ScaleError, dk, SCALE_ERROR_LIMIT)
+            || (dk.abs() > SCALE_ERROR_LIMIT && well_known_scale(estimate, factor))
+        {
             findings.push(finding(
                 FindingKind::ScaleImplausible,
                 format!("scale error {:+.1} %", dk * 100.0),
@@ -114,6 +116,13 @@ pub fn plausible(
         }
     }
     findings
+}
+
+/// Whether the scale factor itself is known to a tenth, however absurd the nominal one is: a scale given upside
+/// down (LSB per m/s²) makes every relative uncertainty look small or large.
+fn well_known_scale(estimate: &Estimate, factor: f64) -> bool {
+    let (u, dk) = (estimate.standard_uncertainty(Parameter::ScaleError), estimate.values[2]);
+    u.zip(dk).is_some_and(|(u, dk)| factor * u < 0.1 * (1.0 + dk).abs())
 }
 
 /// The exact form shows a reversed axis as a misalignment beyond 90°, the paper's as a negative scale.
