@@ -14,7 +14,7 @@ pub enum Proof {
 }
 
 /// A passport that gives no coefficients.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum CompensationRefused {
     /// The calibration was rejected.
     Rejected {
@@ -28,6 +28,13 @@ pub enum CompensationRefused {
     },
     /// Reproducibility is not shown; `--unproven` uses the coefficients all the same.
     Unproven,
+    /// The passport's worked number does not follow from its coefficients: it was edited or damaged.
+    Inconsistent {
+        /// What the passport says, m/s².
+        stated_m_s2: f64,
+        /// What its coefficients give, m/s².
+        computed_m_s2: f64,
+    },
     /// A word that this version does not know.
     Unknown {
         /// The field.
@@ -60,6 +67,11 @@ impl std::fmt::Display for CompensationRefused {
                 f,
                 "reproducibility is not shown (too few runs): the bias may differ after the next power-up; \
                  measure more runs, or accept that with --unproven"
+            ),
+            Self::Inconsistent { stated_m_s2, computed_m_s2 } => write!(
+                f,
+                "its coefficients give {computed_m_s2} m/s² where its own example says {stated_m_s2} m/s²: \
+                 edited or damaged; certify the experiment again"
             ),
             Self::Unknown { field, seen } => write!(
                 f,
@@ -103,7 +115,7 @@ pub fn compensator(passport: &Passport, proof: Proof) -> Result<Compensator, Com
         "none" => Quantizer::None,
         other => return Err(unknown("quantizer", other)),
     };
-    Ok(Compensator {
+    let compensator = Compensator {
         coefficients: Compensation {
             scale_factor_m_s2_per_lsb: c.scale_factor,
             bias_m_s2: c.bias,
@@ -117,5 +129,13 @@ pub fn compensator(passport: &Passport, proof: Proof) -> Result<Compensator, Com
         },
         valid_range_lsb: (c.valid_range_lsb[0], c.valid_range_lsb[1]),
         reading_std_lsb: c.reading_std_lsb,
-    })
+    };
+    let stated_m_s2 = c.example.acceleration_m_s2;
+    let computed_m_s2 = compensator.coefficients.acceleration_m_s2(c.example.code);
+    // Rounding of another platform, no more.
+    if (computed_m_s2 - stated_m_s2).abs() <= 1e-9 * (1.0 + stated_m_s2.abs()) {
+        Ok(compensator)
+    } else {
+        Err(CompensationRefused::Inconsistent { stated_m_s2, computed_m_s2 })
+    }
 }

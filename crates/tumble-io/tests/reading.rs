@@ -124,6 +124,7 @@ fn what_is_not_understood_is_refused_with_its_place_and_a_remedy() {
         ("angle_deg,code\n0,99999999999\n", &["integer code"]),
         ("angle_deg,mean_code\n0,1.5\n", &["`samples`"]),
         ("angle_deg,mean_code,samples\n0,1.5,0\n", &["positive number of samples"]),
+        ("angle_deg;mean_code;samples\n0;1,5;1.000\n", &["positive number of samples"]),
         ("angle_deg,mean_code,samples,std_code\n0,1.5,9,-1\n", &["standard deviation"]),
         ("angle_deg,output\n0,1.5\n", &["`code`"]),
         ("\u{1b}[2Jangle,\u{1b}]0;x\n1,2\n", &["no column"]),

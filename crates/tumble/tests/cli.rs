@@ -189,6 +189,13 @@ fn coefficients_without_proof_are_refused() {
         .replace("\"indeterminate\"", "\"rejected\"");
     std::fs::write(at.join("rejected.json"), rejected).unwrap();
     assert_eq!(code(&with_input(at, &["compensate", "rejected.json", "--unproven"], "1\n")), 1);
+    let mut edited: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(at.join("out/passport.json")).unwrap()).unwrap();
+    edited["compensation"]["bias"] = 5.0.into();
+    std::fs::write(at.join("edited.json"), edited.to_string()).unwrap();
+    let o = with_input(at, &["compensate", "edited.json", "--unproven"], "1\n");
+    assert_eq!((code(&o), out(&o).as_str()), (2, ""));
+    assert!(err(&o).contains("edited or damaged"), "{}", err(&o));
     std::fs::write(at.join("junk.json"), "{\"schema\": \"tumble-passport/9\"}").unwrap();
     let junk = with_input(at, &["compensate", "junk.json"], "1\n");
     assert_eq!(code(&junk), 2);

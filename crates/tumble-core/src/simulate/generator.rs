@@ -86,7 +86,8 @@ pub fn simulate_run(truth: &Truth, run: u32) -> SimulatedRun {
     let mut rng = stream(truth, run);
     let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
     let bias_m_s2 = truth.bias_m_s2 + truth.turn_on_m_s2 * normal();
-    let mut dials: Vec<(f64, bool)> = truth.angles_deg.iter().map(|a| (*a, false)).collect();
+    let mut dials: Vec<(f64, bool)> = // ±90° is stood upright, off the table, as `Bench::seat` takes it.
+        truth.angles_deg.iter().map(|a| (*a, a.abs() == 90.0)).collect();
     if truth.upright_in_each_run {
         dials.splice(0..0, [(90.0, true), (-90.0, true)]);
     }

@@ -32,7 +32,10 @@ pub(super) fn read<R: Read>(
     while let Some((line, text)) = lines.next_data()? {
         let row = Row { fields: buffer.split(text, columns.delimiter), columns, file: &file, line };
         row.check_width()?;
-        let count = integer(trimmed(row.fields.get(samples)))
+        let written = trimmed(row.fields.get(samples));
+        // `1.000` may be one or a thousand: a count has no mark.
+        let count = integer(written)
+            .filter(|_| written.iter().all(|b| b.is_ascii_digit()))
             .and_then(|n| u64::try_from(n).ok())
             .filter(|n| *n > 0)
             .ok_or_else(|| {

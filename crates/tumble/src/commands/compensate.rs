@@ -62,7 +62,9 @@ fn load(args: &CompensateArgs) -> Result<Compensator, (String, Exit)> {
             CompensationRefused::Indeterminate { .. } | CompensationRefused::Unproven => {
                 Exit::Indeterminate
             }
-            CompensationRefused::Unknown { .. } => Exit::Usage,
+            CompensationRefused::Unknown { .. } | CompensationRefused::Inconsistent { .. } => {
+                Exit::Usage
+            }
         };
         (format!("{name}: {e}"), exit)
     })
