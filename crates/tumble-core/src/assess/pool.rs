@@ -113,11 +113,7 @@ fn pool_one(
     level: f64,
 ) -> Option<PooledParameter> {
     let values: Vec<f64> = estimates.iter().filter_map(|e| e.values[parameter.index()]).collect();
-    let own = |e: &Estimate| {
-        let u = e.standard_uncertainty(parameter)?;
-        let t = student_factor(level, e.degrees_of_freedom as f64)?;
-        Some(Interval::around(e.values[parameter.index()]?, t * u))
-    };
+    let own = |e: &Estimate| e.interval(parameter, level).map(|[low, high]| Interval { low, high });
     let value = mean(&values)?;
     let k = values.len();
     let between_run_sd = sample_std(&values);

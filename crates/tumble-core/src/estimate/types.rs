@@ -2,6 +2,7 @@
 
 use super::{Stabilization, WeightedRow};
 use crate::linalg::Matrix;
+use crate::stats::student_factor;
 
 /// The estimator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -148,6 +149,15 @@ impl Estimate {
     pub fn standard_uncertainty(&self, parameter: Parameter) -> Option<f64> {
         let i = parameter.index();
         self.covariance.as_ref().map(|c| c[(i, i)].sqrt())
+    }
+
+    /// `value ± t(n − p) u` at a level of confidence, lower and upper end.
+    #[must_use]
+    pub fn interval(&self, parameter: Parameter, level: f64) -> Option<[f64; 2]> {
+        let value = self.values[parameter.index()]?;
+        let half = self.standard_uncertainty(parameter)?
+            * student_factor(level, self.degrees_of_freedom as f64)?;
+        Some([value - half, value + half])
     }
 
     /// Correlation of two parameters.

@@ -3,7 +3,6 @@
 use tumble_core::assess::{Assessment, Interval, PooledParameter, RunAssessment};
 use tumble_core::estimate::{Estimate as RunFit, EstimateOptions, Method, Parameter, Weights};
 use tumble_core::linalg::Matrix;
-use tumble_core::stats::student_factor;
 use tumble_core::term::TermTest;
 use tumble_core::{
     Experiment, GravitySource, NominalScaleSource, Quantizer, QuantizerOffset, Severity,
@@ -306,15 +305,13 @@ fn run(
 fn run_estimate(e: &RunFit, parameter: Parameter, k0: f64, level: f64) -> Option<wire::Estimate> {
     let value = e.values[parameter.index()]?;
     let u = e.standard_uncertainty(parameter);
-    let dof = e.degrees_of_freedom as f64;
-    let interval =
-        u.zip(student_factor(level, dof)).map(|(u, t)| pair(Interval::around(value, t * u)));
+    let interval = e.interval(parameter, level);
     Some(wire::Estimate {
         value,
         unit: parameter.unit().into(),
         lsb: (parameter == Parameter::Bias).then(|| tumble_core::assess::in_lsb(value, k0)),
         standard_uncertainty: u,
-        degrees_of_freedom: u.map(|_| dof),
+        degrees_of_freedom: u.map(|_| e.degrees_of_freedom as f64),
         level: interval.map(|_| level),
         interval,
         ..wire::Estimate::default()
