@@ -107,6 +107,7 @@ pub fn assess(
     let setting = Setting {
         bench: &experiment.bench,
         quantizer: experiment.output.quantizer,
+        ends: experiment.output.ends,
         nominal_scale_m_s2_per_lsb: k0.value_m_s2_per_lsb,
     };
     let mut runs = Vec::new();

@@ -132,7 +132,7 @@ fn pool_one(
         }
         None => {
             let only = estimates.first()?;
-            (only.standard_uncertainty(parameter)?, only.degrees_of_freedom as f64)
+            (only.standard_uncertainty(parameter)?, only.effective_dof[parameter.index()])
         }
     };
     let u_budget =

@@ -68,11 +68,11 @@ pub fn equations(
                 analogue_lsb: setting.quantizer.analogue_lsb(mean),
                 dwell_variance: match weights {
                     Weights::Equal => 1.0,
-                    Weights::Angle => p.readings.variance_of_mean(setting.quantizer, code_variance),
+                    Weights::Angle | Weights::Stated => p.readings.variance_of_mean(setting.quantizer, code_variance),
                 },
                 angle_uncertainty_rad: match weights {
                     Weights::Equal => 0.0,
-                    Weights::Angle => sigma_phi,
+                    Weights::Angle | Weights::Stated => sigma_phi,
                 },
                 lean_uncertainty_rad: if upright { setting.bench.vertical_lean.rad() } else { 0.0 },
             })

@@ -100,12 +100,22 @@ pub(super) fn fit(
         values,
         covariance,
         degrees_of_freedom,
+        dof: [degrees_of_freedom as f64; 3],
         residuals,
         residual_std_lsb,
         variance_ratio: (redundant && stated).then_some(scatter),
         weighted_rows,
         to_parameters,
+        scatter: None,
     })
+}
+
+/// `(α, β, γ)` of bias, misalignment and scale error.
+pub(super) fn unknowns(values: [f64; 3], setting: &Setting<'_>) -> [f64; 3] {
+    let [bias, misalignment, scale_error] = values;
+    let k = setting.nominal_scale_m_s2_per_lsb * (1.0 + scale_error);
+    let r = setting.bench.gravity.value_m_s2 / k;
+    [bias / k, r * misalignment.cos(), r * misalignment.sin()]
 }
 
 impl ToParameters {

@@ -5,6 +5,7 @@
 mod design;
 mod equations;
 mod exact;
+mod likelihood;
 mod paper;
 mod sequential;
 mod types;
@@ -13,10 +14,13 @@ pub use design::{Prediction, predict};
 pub use equations::{Equation, equations};
 pub use paper::WeightedRow;
 pub use sequential::{SequentialEstimate, Stabilization};
-pub use types::{Estimate, EstimateError, EstimateOptions, Method, Parameter, Residual, Weights};
+pub use types::{
+    Estimate, EstimateError, EstimateOptions, Method, Parameter, Ranged, Residual, Scatter, Split,
+    Weights,
+};
 
 use crate::linalg::{RANK_CONDITION_LIMIT, Triangular};
-use crate::{Bench, Position, Quantizer};
+use crate::{Bench, ConverterEnds, Position, Quantizer};
 
 /// What every run of an experiment shares.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,6 +29,8 @@ pub struct Setting<'a> {
     pub bench: &'a Bench,
     /// The converter.
     pub quantizer: Quantizer,
+    /// Its ends.
+    pub ends: ConverterEnds,
     /// `k0`, m/s² per LSB.
     pub nominal_scale_m_s2_per_lsb: f64,
 }
@@ -53,10 +59,13 @@ pub fn estimate(
     options: &EstimateOptions,
 ) -> Result<Estimate, EstimateError> {
     let identifiability = Identifiability::of(positions, setting);
-    let eqs = equations(positions, setting, options.weights);
+    let eqs = || equations(positions, setting, options.weights);
+    // Without redundancy there is no likelihood of the scatter: what is identifiable is solved for.
+    let redundant = identifiability.full_rank() && positions.len() > 3;
     let fit = match options.method {
-        Method::Paper => paper::fit(&eqs, setting, identifiability.columns),
-        Method::Exact => exact::fit(&eqs, setting, identifiability.columns)?,
+        Method::Paper => paper::fit(&eqs(), setting, identifiability.columns),
+        Method::Likelihood if redundant => likelihood::fit(positions, setting, options)?,
+        Method::Exact | Method::Likelihood => exact::fit(&eqs(), setting, identifiability.columns)?,
     };
     let stabilization = if identifiability.full_rank() {
         sequential::stabilization(&fit, options.level)
@@ -67,11 +76,13 @@ pub fn estimate(
         positions: positions.len(),
         distinct_angles: distinct_angles(positions),
         degrees_of_freedom: fit.degrees_of_freedom,
+        effective_dof: fit.dof,
         values: core::array::from_fn(|i| identifiability.determined[i].then_some(fit.values[i])),
         covariance: fit.covariance,
         residuals: fit.residuals,
         residual_std_lsb: fit.residual_std_lsb,
         variance_ratio: fit.variance_ratio,
+        scatter: fit.scatter,
         condition: identifiability.condition,
         plan_uncertainty: fit
             .residual_std_lsb
@@ -80,6 +91,16 @@ pub fn estimate(
         stabilization,
         weighted_rows: fit.weighted_rows,
     })
+}
+
+/// Observed over expected variance of the positions; absent where nobody stated what to expect.
+fn scatter_ratio(
+    residuals: impl Iterator<Item = (f64, f64)>,
+    degrees_of_freedom: usize,
+    is_stated: bool,
+) -> Option<f64> {
+    let sum: f64 = residuals.map(|(r, v)| r * r / v).sum();
+    (is_stated && degrees_of_freedom > 0).then(|| sum / degrees_of_freedom as f64)
 }
 
 /// Number of different angles, to a millionth of a degree; up and down dwells count as angles.

@@ -1,6 +1,6 @@
 //! The paper's estimator: linear in the small unknowns, ordinary least squares. Kept as the baseline.
 
-use super::types::Residual;
+use super::types::{Residual, Scatter};
 use super::{Equation, Setting, select};
 use crate::linalg::{Matrix, Triangular};
 use crate::{Position, Seat};
@@ -24,6 +24,8 @@ pub(super) struct Fit {
     pub values: [f64; 3],
     pub covariance: Option<Matrix>,
     pub degrees_of_freedom: usize,
+    /// Effective degrees of freedom of each parameter's uncertainty.
+    pub dof: [f64; 3],
     pub residuals: Vec<Residual>,
     pub residual_std_lsb: Option<f64>,
     pub variance_ratio: Option<f64>,
@@ -31,6 +33,8 @@ pub(super) struct Fit {
     pub weighted_rows: Vec<WeightedRow>,
     /// From the unknowns of the rows to bias, misalignment, scale error.
     pub to_parameters: ToParameters,
+    /// Noise and scatter, where the estimator tells them apart.
+    pub scatter: Option<Scatter>,
 }
 
 /// From the unknowns of an adjustment to the parameters.
@@ -105,11 +109,13 @@ pub(super) fn fit(eqs: &[Equation], setting: &Setting<'_>, columns: [bool; 3]) -
         values,
         covariance,
         degrees_of_freedom,
+        dof: [degrees_of_freedom as f64; 3],
         residuals,
         residual_std_lsb: variance.map(|s2| s2.sqrt() / k0),
         variance_ratio: None,
         weighted_rows,
         to_parameters: ToParameters::Identity,
+        scatter: None,
     }
 }
 

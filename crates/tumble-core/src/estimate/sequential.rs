@@ -78,6 +78,9 @@ pub(super) fn stabilization(fit: &Fit, level: f64) -> Stabilization {
 
 fn expanded_uncertainties(fit: &Fit, level: f64) -> Option<[f64; 3]> {
     let covariance = fit.covariance.as_ref()?;
-    let factor = student_factor(level, fit.degrees_of_freedom as f64)?;
-    Some(core::array::from_fn(|i| factor * covariance[(i, i)].sqrt()))
+    let mut out = [0.0; 3];
+    for (i, expanded) in out.iter_mut().enumerate() {
+        *expanded = student_factor(level, fit.dof[i])? * covariance[(i, i)].sqrt();
+    }
+    Some(out)
 }

@@ -11,6 +11,8 @@ pub enum Method {
     Paper,
     /// Exactly linear in three other unknowns (method section 6): right for any size of error.
     Exact,
+    /// Codes within a dwell and scatter between dwells, each by its own likelihood (method section 8). The default.
+    Likelihood,
 }
 
 /// How positions weigh against each other. Their common size always comes from the residuals.
@@ -18,8 +20,12 @@ pub enum Method {
 pub enum Weights {
     /// All the same.
     Equal,
-    /// `1/(σ² + ((g/k*) cos(φ+Δφ) σφ)²)`: angle errors count less where the table is steep.
+    /// `1/(σ² + ((g/k*) cos(φ+Δφ) σφ)²)`: angle errors count less where the table is steep. [`Method::Likelihood`]
+    /// finds both kinds of scatter itself, and takes a stated angle uncertainty as a reason to expect that kind.
     Angle,
+    /// The stated angle uncertainty is taken as known; what scatters beyond it is the same at all positions. Only for
+    /// [`Method::Likelihood`]; the others take it for [`Weights::Angle`].
+    Stated,
 }
 
 /// Options of [`super::estimate`].
@@ -34,9 +40,9 @@ pub struct EstimateOptions {
 }
 
 impl Default for EstimateOptions {
-    /// Exact, weighted by angle, 95 % (JCGM 100: the level for expanded uncertainties).
+    /// Likelihood, both kinds of scatter, 95 % (JCGM 100: the level for expanded uncertainties).
     fn default() -> Self {
-        Self { method: Method::Exact, weights: Weights::Angle, level: 0.95 }
+        Self { method: Method::Likelihood, weights: Weights::Angle, level: 0.95 }
     }
 }
 
@@ -104,6 +110,60 @@ pub struct Residual {
     pub standardized: Option<f64>,
 }
 
+/// A value with the ends of its interval, at the level of [`EstimateOptions`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ranged {
+    /// Where the restricted likelihood is largest; may stand at the lower bound, zero.
+    pub value: f64,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+/// Whether the data tell the two kinds of scatter apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Split {
+    /// One kind was fixed or left out.
+    NotAsked,
+    /// Either kind alone would do: the likelihood-ratio tests reject neither.
+    Undetermined,
+    /// At least one kind is needed.
+    Determined {
+        /// `τ0 > 0` at 5 %.
+        level: bool,
+        /// `τφ > 0` at 5 %.
+        angle: bool,
+    },
+}
+
+/// Noise within dwells and scatter between them: how good sensor and table are.
+///
+/// **Units** LSB and rad. Scatter is what remains beyond noise: setting of the angle, drift, everything that differs
+/// from dwell to dwell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scatter {
+    /// `σ`: standard deviation of the analogue value of a single sample.
+    pub noise_lsb: Ranged,
+    /// Whether `σ` is only bounded: hardly any dwell shows more than one code.
+    pub noise_is_bound: bool,
+    /// `τ0`: scatter that is the same at all angles.
+    pub level_lsb: Ranged,
+    /// `τφ`: scatter of the angles.
+    pub angle_rad: Ranged,
+    /// Both together at 0°, as a level.
+    pub total_lsb: Ranged,
+    /// Both together at 0°, as an angle: the repeatability of the table.
+    pub total_rad: Ranged,
+    /// Correlation of `τ0²` and `τφ²`.
+    pub correlation: Option<f64>,
+    /// Whether the two are told apart.
+    pub split: Split,
+    /// Variance of a dwell's mean over that of independent samples, from block means; one where that is not
+    /// significantly more.
+    pub inflation: f64,
+}
+
 /// The result of one run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Estimate {
@@ -113,6 +173,8 @@ pub struct Estimate {
     pub distinct_angles: usize,
     /// `n − p`.
     pub degrees_of_freedom: usize,
+    /// Effective degrees of freedom of each parameter's standard uncertainty; `n − p` where all positions scatter alike.
+    pub effective_dof: [f64; 3],
     /// In the order of [`Parameter::ALL`]; absent where the positions do not determine it.
     pub values: [Option<f64>; 3],
     /// Covariance in the same order and units; absent without full rank or without redundancy.
@@ -128,6 +190,8 @@ pub struct Estimate {
     /// Standard uncertainties that the plan gives at zero errors with the scatter seen. Where the parameters are
     /// hardly determined, the estimate is far off and the covariance there means little; this still holds.
     pub plan_uncertainty: Option<[f64; 3]>,
+    /// Noise and scatter; only [`Method::Likelihood`] tells them apart.
+    pub scatter: Option<Scatter>,
     /// How the estimate settled as positions were added.
     pub stabilization: Stabilization,
     /// The equations of the adjustment, over their standard deviations; for tests of further terms.
@@ -151,12 +215,18 @@ impl Estimate {
         self.covariance.as_ref().map(|c| c[(i, i)].sqrt())
     }
 
-    /// `value ± t(n − p) u` at a level of confidence, lower and upper end.
+    /// Student's factor of a parameter at a level of confidence.
+    #[must_use]
+    pub fn coverage_factor(&self, parameter: Parameter, level: f64) -> Option<f64> {
+        student_factor(level, self.effective_dof[parameter.index()])
+    }
+
+    /// `value ± t(ν) u` at a level of confidence, lower and upper end.
     #[must_use]
     pub fn interval(&self, parameter: Parameter, level: f64) -> Option<[f64; 2]> {
         let value = self.values[parameter.index()]?;
         let half = self.standard_uncertainty(parameter)?
-            * student_factor(level, self.degrees_of_freedom as f64)?;
+            * self.coverage_factor(parameter, level)?;
         Some([value - half, value + half])
     }
 

@@ -5,7 +5,6 @@
 
 use crate::assess::{PooledParameter, RunAssessment};
 use crate::estimate::{Estimate, Parameter};
-use crate::stats::student_factor;
 use crate::{Finding, FindingKind, Targets};
 
 /// Condition number (unit columns) from which the correlation is worth a warning. The best plans of a table
@@ -110,7 +109,7 @@ pub fn separating_positions(a: Parameter, b: Parameter) -> &'static str {
 
 /// Whether a run alone reaches the targets.
 fn run_reaches(estimate: &Estimate, parameter: Parameter, target: f64, level: f64) -> bool {
-    let factor = student_factor(level, estimate.degrees_of_freedom as f64);
+    let factor = estimate.coverage_factor(parameter, level);
     match (factor, estimate.standard_uncertainty(parameter)) {
         (Some(t), Some(u)) => t * u <= target,
         _ => false,

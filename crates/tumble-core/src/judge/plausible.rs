@@ -4,7 +4,6 @@
 //! catalogue, not from here.
 
 use crate::estimate::{Estimate, Method, Parameter};
-use crate::stats::student_factor;
 use crate::{Finding, FindingKind};
 
 /// Scale error beyond which the nominal scale belongs to another sensor, range or unit. Data sheets state ±4 to
@@ -31,12 +30,12 @@ pub fn plausible(
     level: f64,
 ) -> Vec<Finding> {
     let [bias, misalignment, scale_error] = estimate.values;
-    let factor = student_factor(level, estimate.degrees_of_freedom as f64).unwrap_or(0.0);
+    let factor = |p: Parameter| estimate.coverage_factor(p, level).unwrap_or(0.0);
     // An uncertain estimate is undetermined before it is implausible.
     let surely_beyond = |p: Parameter, value: f64, limit: f64| {
         let planned = estimate.plan_uncertainty.map_or(0.0, |u| u[p.index()]);
         let u = estimate.standard_uncertainty(p).unwrap_or(0.0).max(planned);
-        value.abs() - factor * u > limit
+        value.abs() - factor(p) * u > limit
     };
     let finding = |kind, observed: String, limit: String, remedy: &str| Finding {
         kind,
@@ -64,7 +63,7 @@ pub fn plausible(
                 "give nominal_scale in m/s² per LSB (multiply g per LSB by 9.80665)",
             ));
         } else if surely_beyond(Parameter::ScaleError, dk, SCALE_ERROR_LIMIT)
-            || (dk.abs() > SCALE_ERROR_LIMIT && well_known_scale(estimate, factor))
+            || (dk.abs() > SCALE_ERROR_LIMIT && well_known_scale(estimate, factor(Parameter::ScaleError)))
         {
             findings.push(finding(
                 FindingKind::ScaleImplausible,
@@ -129,7 +128,7 @@ fn well_known_scale(estimate: &Estimate, factor: f64) -> bool {
 fn is_reversed(estimate: &Estimate, method: Method) -> bool {
     let [_, misalignment, scale_error] = estimate.values;
     match method {
-        Method::Exact => misalignment.is_some_and(|m| m.abs() > core::f64::consts::FRAC_PI_2),
+        Method::Exact | Method::Likelihood => misalignment.is_some_and(|m| m.abs() > core::f64::consts::FRAC_PI_2),
         Method::Paper => scale_error.is_some_and(|s| s < -1.0),
     }
 }

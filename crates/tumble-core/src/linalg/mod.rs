@@ -4,8 +4,10 @@
 mod double;
 mod jacobi;
 mod matrix;
+mod symmetric;
 mod triangular;
 
 pub use jacobi::{SingularValues, singular_values};
 pub use matrix::Matrix;
+pub use symmetric::{Symmetric3, dot3};
 pub use triangular::{RANK_CONDITION_LIMIT, RankDeficient, Triangular};

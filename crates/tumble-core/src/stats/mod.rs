@@ -3,7 +3,10 @@
 //! F and χ² come from `statrs` (checked against mpmath to 1e-12). Its normal distribution is good to ten digits only,
 //! so that one comes from `libm::erfc`; its Student distribution fails at many degrees of freedom, so that one is ours.
 
+mod normal;
 mod student;
+
+pub use normal::{IntervalProbability, erfcx};
 
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 

@@ -1,0 +1,188 @@
+//! The parameters of one run when the scatter is given: mean, covariance and integral of their likelihood.
+
+use super::evidence::Evidence;
+use crate::linalg::{Symmetric3, dot3};
+
+/// Sweeps over the dwells after which the answer must stand; three to six are usual.
+const MAX_SWEEPS: usize = 80;
+/// Sweeps after which steps are halved, so that they cannot swing for ever.
+const DAMPED_FROM: usize = 12;
+/// Largest shift of a dwell's modelled level, over its standard deviation, at which the sweeps
+/// stop; the integral is then off by its square.
+const CONVERGED: f64 = 1e-3;
+
+/// One dwell of the adjustment.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Dwell {
+    /// Row of the design in an orthonormal basis: `m = origin + row · shift`.
+    pub row: [f64; 3],
+    /// Modelled level at the reference solution, LSB.
+    pub origin: f64,
+    /// `(∂m/∂φ)²`, LSB² per rad²; zero for upright dwells.
+    pub steepness: f64,
+    /// Variance that is known beforehand (lean of upright dwells, a stated angle uncertainty), LSB².
+    pub known_variance: f64,
+    /// What its readings say.
+    pub evidence: Evidence,
+}
+
+/// A Gaussian that stands for a dwell: `exp(pull·x − ½ precision·x²)` with `x = m − origin`.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Site {
+    pub precision: f64,
+    pub pull: f64,
+}
+
+/// The likelihood of the parameters, with a flat prior integrated over them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Solution {
+    /// Mean, in the orthonormal basis.
+    pub shift: [f64; 3],
+    /// Covariance, in the same.
+    pub covariance: Symmetric3,
+    /// `ln ∫ L(θ) dθ`: the restricted likelihood of the scatter.
+    pub ln_integral: f64,
+    /// Sweeps that it took.
+    pub sweeps: usize,
+    /// Whether they settled.
+    pub settled: bool,
+}
+
+/// Integrates the likelihood over the parameters for given variances of scatter.
+///
+/// **Model** `∏_j ∫ L_j(μ) N(μ; m_j(θ), v_j) dμ`, `m_j` linear in `θ`. Where dwells are Gaussian the integral is
+/// exact and its logarithm is the restricted likelihood (REML). Where they are boxes, each is replaced by the Gaussian
+/// that has the same mean and variance in the company of the others (expectation propagation, T. Minka, 2001); all
+/// factors are log-concave, so the fixed point is the only one.
+///
+/// `sites` holds the Gaussians and is a start for the next call.
+pub(super) fn integrate(dwells: &[Dwell], variances: &[f64], sites: &mut [Site]) -> Option<Solution> {
+    let mut ln_gaussian = 0.0;
+    let mut curves = false;
+    for ((d, v), site) in dwells.iter().zip(variances).zip(sites.iter_mut()) {
+        match &d.evidence {
+            Evidence::Gaussian { .. } => {
+                // At m = origin the marginal holds all that a Gaussian is.
+                let at = d.evidence.marginal(d.origin, *v);
+                *site = Site { precision: -at.curvature, pull: at.slope };
+                ln_gaussian += at.value;
+            }
+            Evidence::Curve(_) => {
+                curves = true;
+                if site.precision <= 0.0 {
+                    let precision = 1.0 / (d.evidence.variance() + v);
+                    *site = Site { precision, pull: precision * (d.evidence.centre() - d.origin) };
+                    if precision == 0.0 {
+                        site.pull = 0.0;
+                    }
+                }
+            }
+        }
+    }
+    let mut sweeps = 0;
+    let mut settled = !curves;
+    let mut ln_curves = 0.0;
+    while !settled && sweeps < MAX_SWEEPS {
+        sweeps += 1;
+        let step = if sweeps > DAMPED_FROM { 0.5 } else { 1.0 };
+        let swept = sweep(dwells, variances, sites, step)?;
+        settled = swept.moved < CONVERGED;
+        ln_curves = swept.ln_constants;
+    }
+    let (covariance, pull, ln_det) = assemble(dwells, sites)?;
+    let shift = covariance.times(pull);
+    let ln_integral = ln_gaussian + ln_curves + 0.5 * dot3(pull, shift) - 0.5 * ln_det;
+    ln_integral.is_finite().then_some(Solution { shift, covariance, ln_integral, sweeps, settled })
+}
+
+/// A dwell in the company of all others: its marginal likelihood at what they say, and what they say.
+pub(super) struct Company {
+    /// Level relative to the origin, and its variance, LSB and LSB².
+    pub at: f64,
+    pub spread: f64,
+}
+
+/// What all other dwells say about each one's level.
+pub(super) fn companies(dwells: &[Dwell], sites: &[Site], solution: &Solution) -> Vec<Company> {
+    dwells
+        .iter()
+        .zip(sites)
+        .map(|(d, site)| {
+            let (at, spread) = cavity(d, site, &solution.covariance, solution.shift);
+            Company { at, spread }
+        })
+        .collect()
+}
+
+/// Covariance, sum of pulls and log-determinant of the precision.
+fn assemble(dwells: &[Dwell], sites: &[Site]) -> Option<(Symmetric3, [f64; 3], f64)> {
+    let mut precision = Symmetric3::default();
+    let mut pull = [0.0; 3];
+    for (d, site) in dwells.iter().zip(sites) {
+        precision.add_outer(d.row, site.precision);
+        (0..3).for_each(|i| pull[i] += site.pull * d.row[i]);
+    }
+    let (covariance, ln_det) = precision.inverse()?;
+    Some((covariance, pull, ln_det))
+}
+
+/// Mean and variance of a dwell's modelled level (about its origin) from all the others.
+fn cavity(d: &Dwell, site: &Site, covariance: &Symmetric3, shift: [f64; 3]) -> (f64, f64) {
+    let spread = covariance.quadratic(d.row).max(f64::MIN_POSITIVE);
+    let at = dot3(d.row, shift);
+    // A dwell that alone determines a direction leaves nothing to the others.
+    let rest = (1.0 - site.precision * spread).max(1e-9);
+    ((at - site.pull * spread) / rest, spread / rest)
+}
+
+/// What one sweep did.
+struct Swept {
+    /// Largest shift of a dwell's level over its standard deviation.
+    moved: f64,
+    /// Sum of the logarithms of what the Gaussians must be multiplied with.
+    ln_constants: f64,
+}
+
+/// Renews the Gaussians of all curved dwells, one after the other.
+fn sweep(dwells: &[Dwell], variances: &[f64], sites: &mut [Site], step: f64) -> Option<Swept> {
+    let (mut covariance, pull, _) = assemble(dwells, sites)?;
+    let mut shift = covariance.times(pull);
+    let mut out = Swept { moved: 0.0, ln_constants: 0.0 };
+    for ((d, v), site) in dwells.iter().zip(variances).zip(sites.iter_mut()) {
+        if matches!(d.evidence, Evidence::Gaussian { .. }) {
+            continue;
+        }
+        let old = *site;
+        let (at, spread) = cavity(d, &old, &covariance, shift);
+        let m = d.evidence.marginal(d.origin + at, v + spread);
+        let rest = (1.0 + spread * m.curvature).max(1e-9);
+        let precision = (-m.curvature / rest).max(0.0);
+        let pull = (m.slope - at * m.curvature) / rest;
+        let new = Site {
+            precision: old.precision + step * (precision - old.precision),
+            pull: old.pull + step * (pull - old.pull),
+        };
+        if !(new.precision.is_finite() && new.pull.is_finite()) {
+            continue;
+        }
+        let stiff = 1.0 + new.precision * spread;
+        let of_site = (new.pull * at + 0.5 * new.pull * new.pull * spread
+            - 0.5 * new.precision * at * at)
+            / stiff;
+        out.ln_constants += m.value + 0.5 * stiff.ln() - of_site;
+        // Rank-one renewal of covariance and mean (Sherman and Morrison).
+        let along = covariance.times(d.row);
+        let own = dot3(d.row, along);
+        let stiffer = new.precision - old.precision;
+        let factor = 1.0 + stiffer * own;
+        if !(factor > 1e-12) {
+            continue;
+        }
+        let gain = (new.pull - old.pull - stiffer * dot3(d.row, shift)) / factor;
+        covariance.add_outer(along, -stiffer / factor);
+        (0..3).for_each(|i| shift[i] += gain * along[i]);
+        *site = new;
+        out.moved = out.moved.max(gain.abs() * own.sqrt()).max(stiffer.abs() * own * 0.3);
+    }
+    Some(out)
+}

@@ -1,0 +1,254 @@
+//! The two-level likelihood: codes within a dwell, scatter between dwells.
+//!
+//! **Model** within a dwell `x_i = μ_j + e_i`, `e_i ~ N(0, σ²)`, `code_i = Q(x_i)`; between dwells
+//! `μ_j = m(φ_j; θ) + u_j`, `u_j ~ N(0, τ0² + τφ² (∂m/∂φ)²)`, `m = α + β sinφ + γ cosφ`.
+//!
+//! The way: what each dwell says about its level ([`evidence`]), the noise that they share ([`noise`]), the parameters for
+//! a given scatter ([`integrate`]), the restricted likelihood of the scatter ([`scatter`]), values and uncertainties over
+//! all of it ([`spread`]).
+//!
+//! **Source** method section 8; `docs/likelihood.md` for derivations, choices and measured coverage.
+
+mod basis;
+mod cells;
+mod evidence;
+mod frame;
+mod integrate;
+mod material;
+mod noise;
+mod scatter;
+mod spread;
+mod table;
+
+use basis::Basis;
+use evidence::Evidence;
+use frame::Frame;
+use integrate::{Dwell, Site, Solution, integrate};
+use material::{Material, Materials};
+use noise::Noise;
+use scatter::{Beforehand, Components, Exploration, Surface};
+use spread::{Reading, Spread};
+
+use super::equations::equations;
+use super::exact;
+use super::paper::{Fit, ToParameters, WeightedRow};
+use super::types::{EstimateError, EstimateOptions, Residual, Weights};
+use super::{Setting, scatter_ratio};
+use crate::Position;
+use crate::linalg::dot3;
+
+/// Shares of the angle in the scatter, and totals for each, at which the surface is evaluated.
+const NODES: (usize, usize) = (6, 16);
+/// The same where each evaluation costs sweeps over curved dwells.
+const FEWER_NODES: (usize, usize) = (2, 9);
+/// Times that the model is expanded anew about the solution; the first is exact but for upright dwells and steepness.
+const EXPANSIONS: usize = 5;
+/// Shift of the solution, relative to `g/k*`, that the expansion bears: the variances then change by twice that.
+const NEAR_ENOUGH: f64 = 1e-3;
+
+/// Everything that was decided about a run before the parameters are read off.
+struct Adjusted {
+    frame: Frame,
+    basis: Basis,
+    dwells: Vec<Dwell>,
+    noise: Noise,
+    exploration: Exploration,
+    /// Solution with the mean weights over the surface, the Gaussians of its dwells, and that scatter.
+    solution: Solution,
+    sites: Vec<Site>,
+    scatter: Vec<f64>,
+    summary: table::ScatterPoints,
+}
+
+/// Fits one run whose positions determine all three parameters, with redundancy.
+pub(super) fn fit(
+    positions: &[&Position],
+    setting: &Setting<'_>,
+    options: &EstimateOptions,
+) -> Result<Fit, EstimateError> {
+    let g = setting.bench.gravity.value_m_s2;
+    let k0 = setting.nominal_scale_m_s2_per_lsb;
+    let to = ToParameters::Exact { gravity_m_s2: g, nominal_scale: k0 };
+    let materials = Materials::of(positions, setting);
+    let failed = || EstimateError::NotConverged { iterations: EXPANSIONS, last_change: f64::INFINITY };
+    let mut reference = start(positions, setting)?;
+    let mut expansions = 0;
+    let adjusted = loop {
+        expansions += 1;
+        let a = adjust(reference, positions, setting, options, &materials).ok_or_else(failed)?;
+        let reading = Reading { basis: &a.basis, reference, to };
+        let next = reading.unknowns(a.solution.shift);
+        let size = next[1].hypot(next[2]);
+        let moved = next.iter().zip(reference).map(|(x, y)| (x - y).abs() / size).fold(0.0, f64::max);
+        if moved < NEAR_ENOUGH || expansions == EXPANSIONS {
+            break a;
+        }
+        reference = next;
+    };
+    let reading = Reading { basis: &adjusted.basis, reference, to };
+    let spread = uncertainty(&adjusted, &materials, &reading);
+    if spread.values.iter().any(|v| !v.is_finite()) {
+        return Err(failed());
+    }
+    Ok(present(positions, setting, options, &materials, &adjusted, &reading, spread))
+}
+
+/// Unknowns to expand about: unweighted least squares of the averages.
+fn start(positions: &[&Position], setting: &Setting<'_>) -> Result<[f64; 3], EstimateError> {
+    let averaged: Vec<&Position> =
+        positions.iter().copied().filter(|p| p.readings.censored(&setting.ends) == 0).collect();
+    let fit = exact::fit(&equations(&averaged, setting, Weights::Equal), setting, [true; 3])?;
+    Ok(exact::unknowns(fit.values, setting))
+}
+
+/// One adjustment about a reference.
+fn adjust(
+    reference: [f64; 3],
+    positions: &[&Position],
+    setting: &Setting<'_>,
+    options: &EstimateOptions,
+    materials: &Materials,
+) -> Option<Adjusted> {
+    let stated = setting.bench.angle_uncertainty.map_or(0.0, |a| a.rad());
+    let fixed = if options.weights == Weights::Stated { stated } else { 0.0 };
+    let components = match options.weights {
+        Weights::Equal | Weights::Stated => Components::Level,
+        Weights::Angle if stated > 0.0 => Components::Both(Beforehand::STATED),
+        Weights::Angle => Components::Both(Beforehand::OPEN),
+    };
+    let frame = Frame::about(reference, positions, setting, fixed);
+    let basis = Basis::of(&frame.rows);
+    let floor = smallest_variance(&frame);
+    let dwells_at = |sigma: f64| -> Vec<Dwell> {
+        let dwell = |(j, m): (usize, &Material)| Dwell {
+            row: basis.rows[j],
+            origin: frame.origins[j],
+            steepness: frame.steepness[j],
+            known_variance: frame.known_variances[j] + floor,
+            evidence: m.evidence(sigma, materials.inflation),
+        };
+        materials.dwells.iter().enumerate().map(dwell).collect()
+    };
+    let share = match components {
+        Components::Both(_) => 0.5,
+        Components::Level => 0.0,
+    };
+    let noise = noise::settle(materials, share, dwells_at)?;
+    let dwells = dwells_at(noise.sigma);
+    let curved = dwells.iter().any(|d| matches!(d.evidence, Evidence::Curve(_)));
+    let (shares, points) = if curved { FEWER_NODES } else { NODES };
+    let mut surface = Surface::new(&dwells);
+    let exploration = surface.explore(components, shares, points, noise.start)?;
+    let highest = surface.highest(&exploration.summits)?;
+    let scatter = spread::mean_scatter(&exploration.nodes, &dwells, |n| surface.components(n.total, n.share));
+    let mut sites = surface.sites().to_vec();
+    let solution = integrate(&dwells, &scatter, &mut sites)?;
+    let summary = table::ScatterPoints::of(&exploration, &highest, |total, share| surface.components(total, share));
+    Some(Adjusted { frame, basis, dwells, noise, exploration, solution, sites, scatter, summary })
+}
+
+/// Variance of readings that do not scatter at all (made by a formula): rounding, 1e-9 of the range.
+fn smallest_variance(frame: &Frame) -> f64 {
+    let range = frame.origins.iter().copied().fold(0.0, |m: f64, x| m.max(x.abs()));
+    (1e-9 * range).powi(2)
+}
+
+/// Uncertainty over the surface, or as the residuals show it; what is not known of the noise is added.
+fn uncertainty(a: &Adjusted, materials: &Materials, reading: &Reading<'_>) -> Spread {
+    let mut spread = spread::over_surface(&a.exploration.nodes, reading);
+    if let Some((u, dof)) = spread::from_residuals(&a.dwells, &a.sites, &a.scatter, &a.solution, reading) {
+        spread.covariance = spread::with_deviations(&spread.covariance, u);
+        spread.dof = dof;
+    }
+    if let Some(by_noise) = shift_by_noise(a, materials, reading) {
+        let u: [f64; 3] = core::array::from_fn(|i| spread.covariance[(i, i)].sqrt().hypot(by_noise[i]));
+        spread.covariance = spread::with_deviations(&spread.covariance, u);
+    }
+    spread
+}
+
+/// Half the change of the parameters over ± one standard deviation of `ln σ`, where the noise shapes the dwells.
+fn shift_by_noise(a: &Adjusted, materials: &Materials, reading: &Reading<'_>) -> Option<[f64; 3]> {
+    if materials.sigma_is_known() {
+        return None;
+    }
+    let at = |factor: f64| {
+        let mut dwells = a.dwells.clone();
+        for (d, m) in dwells.iter_mut().zip(&materials.dwells) {
+            d.evidence = m.evidence(a.noise.sigma * factor, materials.inflation);
+        }
+        let mut sites = a.sites.clone();
+        integrate(&dwells, &a.scatter, &mut sites).map(|s| reading.of(&s).0)
+    };
+    let sd = a.noise.ln_sd.min(0.5);
+    let (up, down) = (at(sd.exp())?, at((-sd).exp())?);
+    Some(core::array::from_fn(|i| 0.5 * (up[i] - down[i]).abs()))
+}
+
+/// The fit as every estimator gives it.
+fn present(
+    positions: &[&Position],
+    setting: &Setting<'_>,
+    options: &EstimateOptions,
+    materials: &Materials,
+    a: &Adjusted,
+    reading: &Reading<'_>,
+    spread: Spread,
+) -> Fit {
+    let degrees_of_freedom = positions.len().saturating_sub(3);
+    let unknowns = reading.unknowns(a.solution.shift);
+    let shift: [f64; 3] = core::array::from_fn(|i| unknowns[i] - a.frame.reference[i]);
+    let modelled = |j: usize| a.frame.origins[j] + dot3(a.frame.rows[j], shift);
+    let residuals: Vec<Residual> = positions
+        .iter()
+        .enumerate()
+        .map(|(j, p)| {
+            let site = a.sites[j];
+            let off = site.pull - site.precision * dot3(a.basis.rows[j], a.solution.shift);
+            Residual {
+                position: j,
+                angle_deg: p.angle.deg(),
+                lsb: a.dwells[j].evidence.contradiction(modelled(j)),
+                standardized: (site.precision > 0.0).then(|| off / site.precision.sqrt()),
+            }
+        })
+        .collect();
+    let weighted_rows = (0..positions.len())
+        .map(|j| {
+            let site = a.sites[j];
+            // A dwell that says nothing has no equation: an infinite deviation, held finite.
+            let precision = site.precision.max(1e-12);
+            let sd_lsb = precision.sqrt().recip();
+            let row = a.frame.rows[j];
+            let offset = site.pull / precision;
+            let y = dot3(row, a.frame.reference) + offset;
+            WeightedRow {
+                row: row.map(|x| x / sd_lsb),
+                y: y / sd_lsb,
+                sd_lsb,
+                residual: (offset - dot3(row, shift)) / sd_lsb,
+            }
+        })
+        .collect();
+    let squares: f64 = residuals.iter().map(|r| r.lsb * r.lsb).sum();
+    let stated = setting.bench.angle_uncertainty.map_or(0.0, |x| x.rad());
+    let expected = |j: usize| {
+        a.dwells[j].evidence.variance() + a.frame.known_variances[j] + a.frame.steepness[j] * stated * stated
+    };
+    Fit {
+        values: spread.values,
+        covariance: Some(spread.covariance),
+        degrees_of_freedom,
+        dof: spread.dof,
+        residual_std_lsb: Some((squares / degrees_of_freedom as f64).sqrt()),
+        variance_ratio: scatter_ratio(
+            residuals.iter().enumerate().map(|(j, r)| (r.lsb, expected(j))),
+            degrees_of_freedom,
+            stated > 0.0 && options.weights != Weights::Equal,
+        ),
+        residuals,
+        weighted_rows,
+        to_parameters: reading.to,
+        scatter: Some(table::scatter(a, materials, unknowns, options.level)),
+    }
+}

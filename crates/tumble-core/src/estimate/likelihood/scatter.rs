@@ -1,0 +1,364 @@
+//! Scatter between dwells: restricted likelihood of its two components, and the parameters averaged over it.
+//!
+//! **Model** `v_j = τ0² + τφ² (∂m/∂φ)² + known_j`, written as a total `V` and the angle's share `w`:
+//! `τ0² = V (1 − w)`, `τφ² = V w / mean (∂m/∂φ)²`.
+
+use super::integrate::{Dwell, Site, Solution, integrate};
+
+/// What may scatter between dwells, with the probabilities that are given to it beforehand.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Components {
+    /// `τ0` and `τφ`, both from the data.
+    Both(Beforehand),
+    /// `τ0` alone.
+    Level,
+}
+
+/// Probability of each kind of scatter before anything was measured; they add up to one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Beforehand {
+    /// Only angles scatter.
+    pub angle: f64,
+    /// Both.
+    pub both: f64,
+    /// Only levels do.
+    pub level: f64,
+}
+
+impl Beforehand {
+    /// Nobody said anything.
+    pub const OPEN: Self = Self { angle: 1.0 / 3.0, both: 1.0 / 3.0, level: 1.0 / 3.0 };
+    /// The experiment states an angle uncertainty: somebody has reason to expect it. Sixteen to one is outvoted by a
+    /// likelihood ratio of a few, which sixty positions over the table's range give.
+    pub const STATED: Self = Self { angle: 0.8, both: 0.15, level: 0.05 };
+}
+
+/// The surface, explored.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Exploration {
+    /// Nodes of the integration.
+    pub nodes: Vec<Node>,
+    /// Its ridges' summits in the order of the share.
+    pub summits: Vec<Summit>,
+}
+
+/// The best total for one share.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Summit {
+    /// `w`.
+    pub share: f64,
+    /// `V`, LSB².
+    pub total: f64,
+    /// Restricted log-likelihood.
+    pub ln_integral: f64,
+}
+
+/// One point of the restricted likelihood's surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Node {
+    /// `V`, LSB².
+    pub total: f64,
+    /// `w`.
+    pub share: f64,
+    /// Logarithm of its weight in averages.
+    pub ln_weight: f64,
+    /// The parameters there.
+    pub solution: Solution,
+}
+
+/// The restricted likelihood of the scatter, with the means to compute it.
+pub(super) struct Surface<'a> {
+    dwells: &'a [Dwell],
+    mean_steepness: f64,
+    /// Size of `V` below which it does not matter.
+    pub floor: f64,
+    variances: Vec<f64>,
+    sites: Vec<Site>,
+    /// Evaluations done.
+    pub evaluations: usize,
+    /// Points where the sweeps did not settle.
+    pub unsettled: usize,
+}
+
+impl<'a> Surface<'a> {
+    pub fn new(dwells: &'a [Dwell]) -> Self {
+        let steep: Vec<f64> =
+            dwells.iter().map(|d| d.steepness).filter(|s| *s > 0.0).collect();
+        let precision: f64 = dwells
+            .iter()
+            .map(|d| (d.evidence.variance() + d.known_variance).recip().powi(2))
+            .filter(|p| p.is_finite())
+            .sum();
+        let floor = (dwells.len() as f64 / precision).sqrt();
+        Self {
+            dwells,
+            mean_steepness: crate::stats::mean(&steep).unwrap_or(1.0),
+            floor: if floor.is_finite() && floor > 0.0 { floor } else { 1e-12 },
+            variances: vec![0.0; dwells.len()],
+            sites: vec![Site::default(); dwells.len()],
+            evaluations: 0,
+            unsettled: 0,
+        }
+    }
+
+    /// `τ0²` and `τφ²`, LSB² and rad².
+    pub fn components(&self, total: f64, share: f64) -> (f64, f64) {
+        (total * (1.0 - share), total * share / self.mean_steepness)
+    }
+
+    /// Solution at a point.
+    pub fn at(&mut self, total: f64, share: f64) -> Option<Solution> {
+        for (v, d) in self.variances.iter_mut().zip(self.dwells) {
+            *v = d.known_variance + total * ((1.0 - share) + share * d.steepness / self.mean_steepness);
+        }
+        self.evaluations += 1;
+        let out = integrate(self.dwells, &self.variances, &mut self.sites);
+        if out.is_none_or(|s| !s.settled) {
+            // A start from the last point may be a bad one.
+            self.sites.fill(Site::default());
+        }
+        self.unsettled += usize::from(out.is_some_and(|s| !s.settled));
+        out
+    }
+
+    /// `V` of a coordinate `x = ln(V + floor)`.
+    pub fn total(&self, x: f64) -> f64 {
+        (x.exp() - self.floor).max(0.0)
+    }
+
+    /// Variances of scatter at the last point.
+    pub fn variances(&self) -> &[f64] {
+        &self.variances
+    }
+
+    /// Gaussians of the dwells at the last point.
+    pub fn sites(&self) -> &[Site] {
+        &self.sites
+    }
+
+    /// Coordinate of the `V` that the restricted likelihood likes best for a share.
+    pub fn best_total(&mut self, share: f64, start: Option<f64>) -> Option<f64> {
+        let start = match start {
+            Some(x) => x.max(self.floor.ln()),
+            None => self.scan(share)?,
+        };
+        self.climb(start, share, 0.3).map(|c| c.0)
+    }
+
+    /// Logarithm of the density of the prior of `V`, for `x = ln(V + floor)`: Jeffreys',
+    /// `p(V) ∝ √Σ (∂v_j/∂V)² / (d_j + v_j)²`. Flat in `ln V` where the scatter dominates (which makes Student's
+    /// intervals exact for one component), flat in `V` where it drowns.
+    fn ln_prior(&self, total: f64, share: f64) -> f64 {
+        let information: f64 = self
+            .dwells
+            .iter()
+            .map(|d| {
+                let by_total = (1.0 - share) + share * d.steepness / self.mean_steepness;
+                let all = d.evidence.variance() + d.known_variance + total * by_total;
+                (by_total / all).powi(2)
+            })
+            .filter(|i| i.is_finite())
+            .sum();
+        0.5 * information.ln() + (total + self.floor).ln()
+    }
+
+    fn ln_density(&mut self, x: f64, share: f64) -> Option<(f64, Solution)> {
+        let total = self.total(x);
+        let solution = self.at(total, share)?;
+        Some((solution.ln_integral + self.ln_prior(total, share), solution))
+    }
+
+    /// Maximum of a function of `x` by steps uphill and parabolas, from a start.
+    fn climb(&mut self, start: f64, share: f64, step: f64) -> Option<(f64, f64)> {
+        let low = self.floor.ln();
+        let f = |s: &mut Self, x: f64| s.ln_density(x, share).map(|d| d.0);
+        let (mut x, mut step) = (start.max(low), step);
+        let mut here = f(self, x)?;
+        for _ in 0..60 {
+            let (left_x, right_x) = ((x - step).max(low), x + step);
+            let right = f(self, right_x)?;
+            if right > here {
+                (x, here) = (right_x, right);
+                step *= 1.6;
+                continue;
+            }
+            let left = if left_x < x { f(self, left_x)? } else { f64::NEG_INFINITY };
+            if left > here {
+                (x, here) = (left_x, left);
+                step *= 1.6;
+                continue;
+            }
+            if left.is_finite() {
+                // Bracketed: one parabola, then finer.
+                let (a, b) = (x - left_x, right_x - x);
+                let (fa, fb) = (here - left, here - right);
+                let denominator = fa * b + fb * a;
+                let to = if denominator > 0.0 { 0.5 * (fa * b * b - fb * a * a) / denominator } else { 0.0 };
+                let next = x - to;
+                if next > low && to.abs() > 1e-3 {
+                    let value = f(self, next)?;
+                    if value > here {
+                        (x, here) = (next, value);
+                    }
+                }
+                if fa.max(fb) < 0.05 || step < 0.05 {
+                    return Some((x, here));
+                }
+            } else if step < 0.05 {
+                return Some((x, here));
+            }
+            step *= 0.3;
+        }
+        Some((x, here))
+    }
+
+    /// The surface along `x` for one share: nodes and weights of an integration over all of it that matters.
+    fn ridge(
+        &mut self,
+        share: f64,
+        prior: f64,
+        start: f64,
+        points: usize,
+        out: &mut Exploration,
+    ) -> Option<f64> {
+        let low = self.floor.ln();
+        let (peak, top) = self.climb(start, share, 0.5)?;
+        let summit = self.summit(share, peak)?;
+        out.summits.push(summit);
+        let edge = |s: &mut Self, side: f64| -> Option<f64> {
+            let (mut step, mut x) = (0.25, peak);
+            loop {
+                let next = peak + side * step;
+                if next <= low {
+                    return Some(low);
+                }
+                x = if step > 60.0 { return Some(x) } else { next };
+                if s.ln_density(x, share)?.0 < top - DEPTH {
+                    return Some(x);
+                }
+                step *= 1.5;
+            }
+        };
+        let (from, to) = (edge(self, -1.0)?, edge(self, 1.0)?);
+        for (u, weight) in gauss_legendre(points) {
+            let x = from + (to - from) * 0.5 * (1.0 + u);
+            let (density, solution) = self.ln_density(x, share)?;
+            out.nodes.push(Node {
+                total: self.total(x),
+                share,
+                ln_weight: density + (0.5 * weight * (to - from) * prior).ln(),
+                solution,
+            });
+        }
+        Some(peak)
+    }
+
+    fn summit(&mut self, share: f64, x: f64) -> Option<Summit> {
+        let total = self.total(x);
+        Some(Summit { share, total, ln_integral: self.at(total, share)?.ln_integral })
+    }
+
+    /// Nodes over the whole surface.
+    ///
+    /// Where both scatter, the share has the arcsine prior (Jeffreys' for a share).
+    pub fn explore(
+        &mut self,
+        components: Components,
+        shares: usize,
+        points: usize,
+        start: Option<f64>,
+    ) -> Option<Exploration> {
+        let start_at = |s: &mut Self, share: f64| match start {
+            Some(x) => Some(x.max(s.floor.ln())),
+            None => s.scan(share),
+        };
+        let mut out = Exploration { nodes: Vec::new(), summits: Vec::new() };
+        match components {
+            Components::Level => {
+                let start = start_at(self, 0.0)?;
+                self.ridge(0.0, 1.0, start, points, &mut out)?;
+            }
+            Components::Both(beforehand) => {
+                let start = start_at(self, 0.5)?;
+                let mut at = self.ridge(0.0, beforehand.level, start, points, &mut out)?;
+                for k in 0..shares {
+                    let turn = core::f64::consts::PI * (k as f64 + 0.5) / shares as f64;
+                    let share = 0.5 * (1.0 - turn.cos());
+                    at = self.ridge(share, beforehand.both / shares as f64, at, points, &mut out)?;
+                }
+                self.ridge(1.0, beforehand.angle, at, points, &mut out)?;
+            }
+        }
+        Some(out)
+    }
+
+    /// The highest summit, the share refined between its neighbours by golden sections.
+    pub fn highest(&mut self, summits: &[Summit]) -> Option<Summit> {
+        let best = (0..summits.len())
+            .max_by(|a, b| summits[*a].ln_integral.total_cmp(&summits[*b].ln_integral))?;
+        let mut top = summits[best];
+        if best == 0 || best + 1 == summits.len() {
+            return Some(top);
+        }
+        let (mut low, mut high) = (summits[best - 1].share, summits[best + 1].share);
+        for _ in 0..6 {
+            let wider = if high - top.share > top.share - low { high } else { low };
+            let share = top.share + 0.382 * (wider - top.share);
+            let x = self.climb((top.total + self.floor).ln(), share, 0.2)?.0;
+            let next = self.summit(share, x)?;
+            if next.ln_integral > top.ln_integral {
+                if share > top.share { low = top.share } else { high = top.share }
+                top = next;
+            } else if share > top.share {
+                high = share;
+            } else {
+                low = share;
+            }
+        }
+        Some(top)
+    }
+
+    /// Coarse look at the whole range of `V`, so that no second summit is missed.
+    fn scan(&mut self, share: f64) -> Option<f64> {
+        let low = self.floor.ln();
+        let mut best = (low, f64::NEG_INFINITY);
+        let mut falling = 0;
+        for k in 0..40 {
+            let x = low + 0.9 * f64::from(k);
+            let value = self.ln_density(x, share)?.0;
+            if value > best.1 {
+                best = (x, value);
+                falling = 0;
+            } else {
+                falling += 1;
+            }
+            if falling >= 6 && value < best.1 - 5.0 {
+                break;
+            }
+        }
+        Some(best.0)
+    }
+}
+
+/// Depth below the summit, in log-likelihood, to which the surface is integrated: what is lower weighs 1e-6.
+const DEPTH: f64 = 14.0;
+
+/// Nodes and weights of Gauss and Legendre on −1 … 1, by Newton's method on the polynomial.
+fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
+    (0..n)
+        .map(|i| {
+            let mut x = (core::f64::consts::PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
+            let mut derivative = 1.0;
+            for _ in 0..8 {
+                let (mut p0, mut p1) = (1.0, x);
+                for k in 2..=n {
+                    let k = k as f64;
+                    (p0, p1) = (p1, ((2.0 * k - 1.0) * x * p1 - (k - 1.0) * p0) / k);
+                }
+                derivative = n as f64 * (x * p1 - p0) / (x * x - 1.0);
+                x -= p1 / derivative;
+            }
+            (x, 2.0 / ((1.0 - x * x) * derivative * derivative))
+        })
+        .collect()
+}
