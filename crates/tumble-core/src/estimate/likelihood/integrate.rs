@@ -9,7 +9,7 @@ const MAX_SWEEPS: usize = 80;
 const DAMPED_FROM: usize = 12;
 /// Largest shift of a dwell's modelled level, over its standard deviation, at which the sweeps
 /// stop; the integral is then off by its square.
-const CONVERGED: f64 = 1e-3;
+const CONVERGED: f64 = 5e-3;
 
 /// One dwell of the adjustment.
 #[derive(Debug, Clone, PartialEq)]

@@ -17,6 +17,7 @@ mod integrate;
 mod material;
 mod noise;
 mod scatter;
+mod search;
 mod spread;
 mod table;
 
@@ -86,7 +87,8 @@ pub(super) fn fit(
         reference = next;
     };
     let reading = Reading { basis: &adjusted.basis, reference, to };
-    let spread = uncertainty(&adjusted, &materials, &reading);
+    let free = options.weights == Weights::Angle;
+    let spread = uncertainty(&adjusted, &materials, &reading, free);
     if spread.values.iter().any(|v| !v.is_finite()) {
         return Err(failed());
     }
@@ -154,9 +156,12 @@ fn smallest_variance(frame: &Frame) -> f64 {
 }
 
 /// Uncertainty over the surface, or as the residuals show it; what is not known of the noise is added.
-fn uncertainty(a: &Adjusted, materials: &Materials, reading: &Reading<'_>) -> Spread {
+fn uncertainty(a: &Adjusted, materials: &Materials, reading: &Reading<'_>, shape_is_free: bool) -> Spread {
     let mut spread = spread::over_surface(&a.exploration.nodes, reading);
-    if let Some((u, dof)) = spread::from_residuals(&a.dwells, &a.sites, &a.scatter, &a.solution, reading) {
+    let shown = shape_is_free
+        .then(|| spread::from_residuals(&a.dwells, &a.sites, &a.scatter, &a.solution, reading))
+        .flatten();
+    if let Some((u, dof)) = shown {
         spread.covariance = spread::with_deviations(&spread.covariance, u);
         spread.dof = dof;
     }

@@ -3,7 +3,8 @@
 //! **Model** `v_j = τ0² + τφ² (∂m/∂φ)² + known_j`, written as a total `V` and the angle's share `w`:
 //! `τ0² = V (1 − w)`, `τφ² = V w / mean (∂m/∂φ)²`.
 
-use super::integrate::{Dwell, Site, Solution, integrate};
+use super::integrate::{Dwell, Site, Solution, companies, integrate};
+use super::search::crossing;
 
 /// What may scatter between dwells, with the probabilities that are given to it beforehand.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -136,13 +137,32 @@ impl<'a> Surface<'a> {
         &self.sites
     }
 
-    /// Coordinate of the `V` that the restricted likelihood likes best for a share.
+    /// Coordinate of the `V` that the restricted likelihood likes best for a share, near a start.
+    ///
+    /// The derivative costs no second solution: `∂L/∂v = ½ (ℓ″ + ℓ′²)` of each dwell in the company of the others (the
+    /// heat equation).
     pub fn best_total(&mut self, share: f64, start: Option<f64>) -> Option<f64> {
+        let low = self.floor.ln();
         let start = match start {
-            Some(x) => x.max(self.floor.ln()),
+            Some(x) => x.max(low),
             None => self.scan(share)?,
         };
-        self.climb(start, share, 0.3).map(|c| c.0)
+        let found = crossing(start, 0.4, (low, low + 60.0), WORTH, |x| {
+            let solution = self.at(self.total(x), share)?;
+            let around = companies(self.dwells, &self.sites, &solution);
+            let by_total = |d: &Dwell| (1.0 - share) + share * d.steepness / self.mean_steepness;
+            let slope: f64 = around
+                .iter()
+                .zip(self.dwells)
+                .zip(&self.variances)
+                .map(|((c, d), v)| {
+                    let m = d.evidence.marginal(d.origin + c.at, v + c.spread);
+                    0.5 * by_total(d) * (m.curvature + m.slope * m.slope)
+                })
+                .sum();
+            Some(slope * x.exp())
+        })?;
+        Some(found.0)
     }
 
     /// Logarithm of the density of the prior of `V`, for `x = ln(V + floor)`: Jeffreys',
@@ -339,6 +359,9 @@ impl<'a> Surface<'a> {
         Some(best.0)
     }
 }
+
+/// Log-likelihood that the last step of a search for `V` may still be worth.
+const WORTH: f64 = 0.03;
 
 /// Depth below the summit, in log-likelihood, to which the surface is integrated: what is lower weighs 1e-6.
 const DEPTH: f64 = 14.0;

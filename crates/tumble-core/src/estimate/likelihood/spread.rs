@@ -198,7 +198,8 @@ pub(super) fn from_residuals(
             }
         }
         u[i] = variance.sqrt();
-        dof[i] = expected * expected / square;
+        // What upright dwells add is taken as known, but never better than all residuals together could tell.
+        dof[i] = (expected * expected / square).min(dwells.len() as f64 - 3.0);
         if !(dof[i] >= RESIDUALS_FROM_DOF && u[i] > 0.0) {
             return None;
         }
