@@ -158,6 +158,8 @@ finding_kinds! {
     IgnoredColumns = "T0314", Note, "columns that were not used";
     /// Compensation does not help on held-out runs.
     CompensationWorse = "T0315", Warning, "compensation does not reduce the error on other runs";
+    /// Noise within dwells is not white.
+    SlowNoise = "T0316", Note, "noise within dwells is not white";
 }
 
 #[cfg(test)]

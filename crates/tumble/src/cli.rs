@@ -37,8 +37,10 @@ pub(crate) enum Command {
 pub(crate) enum MethodArg {
     /// The paper's: linear in the small unknowns, unweighted.
     Paper,
-    /// Exact for errors of any size.
+    /// Exact for errors of any size, on averages.
     Exact,
+    /// Two-level likelihood: codes within a dwell, scatter between dwells.
+    Likelihood,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -47,6 +49,8 @@ pub(crate) enum WeightsArg {
     Equal,
     /// By what an error of the angle does at each position.
     Angle,
+    /// The stated angle uncertainty is taken as known (likelihood only).
+    Stated,
 }
 
 #[derive(Debug, Args)]
@@ -64,7 +68,7 @@ pub(crate) struct CertifyArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Estimator.
-    #[arg(long, value_enum, default_value = "exact")]
+    #[arg(long, value_enum, default_value = "likelihood")]
     pub(crate) method: MethodArg,
     /// Weights of the positions [default: angle; the paper's method has none].
     #[arg(long, value_enum)]

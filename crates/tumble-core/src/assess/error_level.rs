@@ -75,7 +75,9 @@ fn table_positions<'a>(
         .iter()
         .zip(&run.mean_codes)
         .filter(move |(r, _)| !upright(r.angle_deg))
-        .map(|(r, mean)| (r.angle_deg.to_radians(), setting.quantizer.analogue_lsb(*mean)))
+        .filter_map(|(r, mean)| {
+            Some((r.angle_deg.to_radians(), setting.quantizer.analogue_lsb((*mean)?)))
+        })
 }
 
 /// Error level of an experiment; `None` where no run has all three parameters.

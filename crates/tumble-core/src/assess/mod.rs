@@ -55,8 +55,9 @@ pub struct RunAssessment {
     pub mounting: String,
     /// Absent when nothing could be adjusted.
     pub estimate: Option<Estimate>,
-    /// Mean readings of the positions that were used, LSB, in measured order.
-    pub mean_codes: Vec<f64>,
+    /// Mean readings of the positions that were used, LSB, in measured order; `None` where codes stood at the
+    /// converter's end.
+    pub mean_codes: Vec<Option<f64>>,
     /// Mean temperatures of those positions.
     pub temperatures_degc: Vec<Option<f64>>,
     /// Standard deviation of single readings within dwells, pooled, LSB.
@@ -205,10 +206,14 @@ fn assess_run(
         }
         _ => candidates,
     };
-    let usable = judge::usable_positions(run, candidates, &experiment.output, bench, k0);
+    let censored = match options.method {
+        crate::estimate::Method::Likelihood => judge::Censored::Kept,
+        _ => judge::Censored::LeftOut,
+    };
+    let usable = judge::usable_positions(run, candidates, &experiment.output, bench, k0, censored);
     findings.extend(usable.findings);
     let positions = usable.positions;
-    findings.extend(judge::noise(&run.name, &positions, &experiment.output));
+    findings.extend(judge::noise(&run.name, &positions, &experiment.output, options.method));
     let estimate = adjust(&run.name, &positions, setting, options, findings);
     if let Some(e) = &estimate {
         findings.extend(judge::few_angles(&run.name, e));
@@ -217,6 +222,7 @@ fn assess_run(
         findings.extend(judge::table(&run.name, e, stated, g / k0));
         findings.extend(judge::determined_run(&run.name, e));
         findings.extend(judge::settled(&run.name, e));
+        findings.extend(judge::slow_noise(&run.name, e));
     }
     let variances: Vec<f64> =
         positions.iter().filter_map(|p| p.readings.std()).map(|s| s * s).collect();
@@ -224,7 +230,13 @@ fn assess_run(
         name: run.name.clone(),
         mounting: run.mounting.clone(),
         estimate,
-        mean_codes: positions.iter().filter_map(|p| p.readings.mean()).collect(),
+        mean_codes: positions
+            .iter()
+            .map(|p| {
+                let whole = p.readings.censored(&experiment.output.ends) == 0;
+                p.readings.mean().filter(|_| whole)
+            })
+            .collect(),
         temperatures_degc: positions.iter().map(|p| p.temperature_degc).collect(),
         reading_std_lsb: crate::stats::mean(&variances).map(f64::sqrt),
     }
@@ -253,7 +265,24 @@ fn adjust(
         limit: "a fixed point".into(),
         remedy: "check the run's angles and codes: they do not belong together".into(),
     });
-    estimate(positions, setting, &EstimateOptions { weights: Weights::Equal, ..*options }).ok()
+    // Averages at the converter's ends are none.
+    let inside: Vec<&Position> =
+        positions.iter().copied().filter(|p| p.readings.censored(&setting.ends) == 0).collect();
+    let plain = EstimateOptions {
+        method: plain_method(options.method),
+        weights: Weights::Equal,
+        ..*options
+    };
+    estimate(&inside, setting, &plain).ok()
+}
+
+/// The estimator that always has an answer.
+fn plain_method(method: crate::estimate::Method) -> crate::estimate::Method {
+    use crate::estimate::Method::{Exact, Likelihood, Paper};
+    match method {
+        Paper => Paper,
+        Exact | Likelihood => Exact,
+    }
 }
 
 /// Structure in each run alone and in all together; one finding, the most telling.

@@ -128,7 +128,7 @@ pub fn compensation_result(
     let k = nominal_scale_m_s2_per_lsb;
     let to_use = Matrix::from_rows([[0.0, 0.0, k], [1.0, 0.0, 0.0]]);
     let scale_factor_m_s2_per_lsb = k * (1.0 + scale.value);
-    let means = || runs.iter().flat_map(|r| r.mean_codes.iter().copied());
+    let means = || runs.iter().flat_map(|r| r.mean_codes.iter().copied().flatten());
     let valid_range_lsb = (means().reduce(f64::min)?, means().reduce(f64::max)?);
     let offset = quantizer.offset();
     let code = (0.5 * valid_range_lsb.1.abs().max(valid_range_lsb.0.abs())).round();

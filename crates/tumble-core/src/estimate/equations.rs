@@ -68,7 +68,9 @@ pub fn equations(
                 analogue_lsb: setting.quantizer.analogue_lsb(mean),
                 dwell_variance: match weights {
                     Weights::Equal => 1.0,
-                    Weights::Angle | Weights::Stated => p.readings.variance_of_mean(setting.quantizer, code_variance),
+                    Weights::Angle | Weights::Stated => {
+                        p.readings.variance_of_mean(setting.quantizer, code_variance)
+                    }
                 },
                 angle_uncertainty_rad: match weights {
                     Weights::Equal => 0.0,

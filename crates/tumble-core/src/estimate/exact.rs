@@ -101,6 +101,7 @@ pub(super) fn fit(
         covariance,
         degrees_of_freedom,
         dof: [degrees_of_freedom as f64; 3],
+        profile: None,
         residuals,
         residual_std_lsb,
         variance_ratio: (redundant && stated).then_some(scatter),

@@ -15,8 +15,8 @@ pub use equations::{Equation, equations};
 pub use paper::WeightedRow;
 pub use sequential::{SequentialEstimate, Stabilization};
 pub use types::{
-    Estimate, EstimateError, EstimateOptions, Method, Parameter, Ranged, Residual, Scatter, Split,
-    Weights,
+    Estimate, EstimateError, EstimateOptions, Method, Parameter, ProfileIntervals, Ranged,
+    Residual, Scatter, Split, Weights,
 };
 
 use crate::linalg::{RANK_CONDITION_LIMIT, Triangular};
@@ -82,6 +82,7 @@ pub fn estimate(
         residuals: fit.residuals,
         residual_std_lsb: fit.residual_std_lsb,
         variance_ratio: fit.variance_ratio,
+        profile: fit.profile,
         scatter: fit.scatter,
         condition: identifiability.condition,
         plan_uncertainty: fit

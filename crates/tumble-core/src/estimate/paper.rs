@@ -1,6 +1,6 @@
 //! The paper's estimator: linear in the small unknowns, ordinary least squares. Kept as the baseline.
 
-use super::types::{Residual, Scatter};
+use super::types::{ProfileIntervals, Residual, Scatter};
 use super::{Equation, Setting, select};
 use crate::linalg::{Matrix, Triangular};
 use crate::{Position, Seat};
@@ -26,6 +26,8 @@ pub(super) struct Fit {
     pub degrees_of_freedom: usize,
     /// Effective degrees of freedom of each parameter's uncertainty.
     pub dof: [f64; 3],
+    /// Intervals that are not `value ± t u`.
+    pub profile: Option<ProfileIntervals>,
     pub residuals: Vec<Residual>,
     pub residual_std_lsb: Option<f64>,
     pub variance_ratio: Option<f64>,
@@ -110,6 +112,7 @@ pub(super) fn fit(eqs: &[Equation], setting: &Setting<'_>, columns: [bool; 3]) -
         covariance,
         degrees_of_freedom,
         dof: [degrees_of_freedom as f64; 3],
+        profile: None,
         residuals,
         residual_std_lsb: variance.map(|s2| s2.sqrt() / k0),
         variance_ratio: None,

@@ -34,6 +34,14 @@ pub(super) fn stabilization(fit: &Fit, level: f64) -> Stabilization {
     let n = fit.weighted_rows.len();
     let expanded = expanded_uncertainties(fit, level);
     let mut triangle = Triangular::new(3);
+    fit.weighted_rows.iter().for_each(|e| triangle.push(&e.row, e.y));
+    // Steps are held against what the rows' own weights say, not against the uncertainty that is printed.
+    let end = (fit.covariance.is_some() && triangle.solve().is_ok()).then(|| {
+        let b = triangle.back_substituted();
+        let (values, jacobian) = fit.to_parameters.at([b[0], b[1], b[2]]);
+        (values, triangle.unit_covariance_unchecked().propagated(&jacobian))
+    });
+    let mut triangle = Triangular::new(3);
     let mut out = Stabilization::default();
     let mut full_rank = false;
     let mut all: Vec<SequentialEstimate> = Vec::with_capacity(n);
@@ -46,11 +54,11 @@ pub(super) fn stabilization(fit: &Fit, level: f64) -> Stabilization {
         let b = triangle.back_substituted();
         let (values, jacobian) = fit.to_parameters.at([b[0], b[1], b[2]]);
         all.push(SequentialEstimate { positions: i + 1, values });
-        if let (Some(last), true) = (&fit.covariance, i + 1 < n && 2 * (i + 1) >= n && i >= 5) {
+        if let (Some((last_values, last)), true) = (&end, i + 1 < n && 2 * (i + 1) >= n && i >= 5) {
             let here = triangle.unit_covariance_unchecked().propagated(&jacobian);
             for (k, value) in values.iter().enumerate() {
                 let variance = here[(k, k)] - last[(k, k)];
-                let step = (value - fit.values[k]).abs() / variance.max(0.0).sqrt();
+                let step = (value - last_values[k]).abs() / variance.max(0.0).sqrt();
                 if step.is_finite() {
                     out.largest_step = Some(out.largest_step.unwrap_or(0.0).max(step));
                 }

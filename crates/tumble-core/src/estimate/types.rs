@@ -137,6 +137,15 @@ pub enum Split {
     },
 }
 
+/// Intervals of the three parameters from the profile likelihood, at one level of confidence.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ProfileIntervals {
+    /// Level of confidence.
+    pub level: f64,
+    /// Lower and upper ends, in the order of [`Parameter::ALL`].
+    pub ends: [[f64; 2]; 3],
+}
+
 /// Noise within dwells and scatter between them: how good sensor and table are.
 ///
 /// **Units** LSB and rad. Scatter is what remains beyond noise: setting of the angle, drift, everything that differs
@@ -190,6 +199,8 @@ pub struct Estimate {
     /// Standard uncertainties that the plan gives at zero errors with the scatter seen. Where the parameters are
     /// hardly determined, the estimate is far off and the covariance there means little; this still holds.
     pub plan_uncertainty: Option<[f64; 3]>,
+    /// Intervals from the profile likelihood, where codes make boxes of the dwells' likelihood.
+    pub profile: Option<ProfileIntervals>,
     /// Noise and scatter; only [`Method::Likelihood`] tells them apart.
     pub scatter: Option<Scatter>,
     /// How the estimate settled as positions were added.
@@ -221,12 +232,15 @@ impl Estimate {
         student_factor(level, self.effective_dof[parameter.index()])
     }
 
-    /// `value ± t(ν) u` at a level of confidence, lower and upper end.
+    /// From the profile likelihood where there is one at this level, else `value ± t(ν) u`, at a level of confidence, lower and upper end.
     #[must_use]
     pub fn interval(&self, parameter: Parameter, level: f64) -> Option<[f64; 2]> {
         let value = self.values[parameter.index()]?;
-        let half = self.standard_uncertainty(parameter)?
-            * self.coverage_factor(parameter, level)?;
+        if let Some(p) = self.profile.filter(|p| p.level == level) {
+            return Some(p.ends[parameter.index()]);
+        }
+        let half =
+            self.standard_uncertainty(parameter)? * self.coverage_factor(parameter, level)?;
         Some([value - half, value + half])
     }
 

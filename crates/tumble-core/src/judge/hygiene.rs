@@ -1,11 +1,20 @@
 //! Data hygiene before any estimation: saturated dwells, a stuck converter, copies.
 
-use crate::{Bench, Code, Finding, FindingKind, Output, Position, Run};
+use crate::{Bench, Code, Finding, FindingKind, Output, Position, Readings, Run};
 
 /// Movement of the angle, in LSB's worth, during which a converter must not keep its code.
 const STUCK_LIMIT_LSB: f64 = 2.0;
 
-/// Positions that can be averaged, and what was noticed while choosing them.
+/// What is done with dwells that touch the converter's ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Censored {
+    /// Averages know nothing of half-lines: the whole dwell is left out.
+    LeftOut,
+    /// Raw codes at an end are bounds for the likelihood.
+    Kept,
+}
+
+/// Positions that can be used, and what was noticed while choosing them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Usable<'a> {
     /// In measured order.
@@ -14,7 +23,9 @@ pub struct Usable<'a> {
     pub findings: Vec<Finding>,
 }
 
-/// Leaves out dwells that touch the converter's ends and looks for a converter that sticks.
+/// Chooses the dwells that an estimator can use, and looks for a converter that sticks.
+///
+/// Dwells at the converter's ends are kept only where three and more others carry the solution.
 #[must_use]
 pub fn usable_positions<'a>(
     run: &Run,
@@ -22,11 +33,14 @@ pub fn usable_positions<'a>(
     output: &Output,
     bench: &Bench,
     nominal_scale_m_s2_per_lsb: f64,
+    handling: Censored,
 ) -> Usable<'a> {
     let mut findings = Vec::new();
     let total = candidates.len();
-    let (positions, censored): (Vec<_>, Vec<_>) =
+    let all = candidates.clone();
+    let (mut positions, censored): (Vec<_>, Vec<_>) =
         candidates.into_iter().partition(|p| p.readings.censored(&output.ends) == 0);
+    let kept = handling == Censored::Kept && positions.len() > 3;
     let ends = format!(
         "codes strictly inside {} … {}",
         end_text(output.ends.min_code),
@@ -47,8 +61,9 @@ pub fn usable_positions<'a>(
             kind: FindingKind::SaturatedDwell,
             place: first.place.clone(),
             observed: format!(
-                "{} of {total} dwells hold codes at the converter's end; left out",
-                censored.len()
+                "{} of {total} dwells hold codes at the converter's end; {}",
+                censored.len(),
+                if kept { "used as bounds" } else { "left out" }
             ),
             limit: ends,
             remedy: "keep the angles inside the converter's range, or lower the gain".into(),
@@ -57,6 +72,16 @@ pub fn usable_positions<'a>(
     let full_scale = bench.gravity.value_m_s2 / nominal_scale_m_s2_per_lsb;
     if let Some(finding) = stuck(run, &positions, full_scale) {
         findings.push(finding);
+    }
+    if kept {
+        // An average at an end says how little it knows: nothing.
+        positions = all
+            .into_iter()
+            .filter(|p| {
+                p.readings.censored(&output.ends) == 0
+                    || matches!(p.readings, Readings::Codes { .. })
+            })
+            .collect();
     }
     Usable { positions, findings }
 }

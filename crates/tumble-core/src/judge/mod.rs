@@ -10,10 +10,10 @@ mod settled;
 mod structure;
 mod table;
 
-pub use hygiene::{Usable, identical_runs, usable_positions};
+pub use hygiene::{Censored, Usable, identical_runs, usable_positions};
 pub use identifiable::{determined_result, determined_run, few_angles};
 pub use plausible::plausible;
 pub use reproducible::reproducible;
 pub use settled::settled;
 pub use structure::{Structure, structure};
-pub use table::{noise, table};
+pub use table::{noise, slow_noise, table};

@@ -63,7 +63,8 @@ pub fn plausible(
                 "give nominal_scale in m/s² per LSB (multiply g per LSB by 9.80665)",
             ));
         } else if surely_beyond(Parameter::ScaleError, dk, SCALE_ERROR_LIMIT)
-            || (dk.abs() > SCALE_ERROR_LIMIT && well_known_scale(estimate, factor(Parameter::ScaleError)))
+            || (dk.abs() > SCALE_ERROR_LIMIT
+                && well_known_scale(estimate, factor(Parameter::ScaleError)))
         {
             findings.push(finding(
                 FindingKind::ScaleImplausible,
@@ -128,7 +129,9 @@ fn well_known_scale(estimate: &Estimate, factor: f64) -> bool {
 fn is_reversed(estimate: &Estimate, method: Method) -> bool {
     let [_, misalignment, scale_error] = estimate.values;
     match method {
-        Method::Exact | Method::Likelihood => misalignment.is_some_and(|m| m.abs() > core::f64::consts::FRAC_PI_2),
+        Method::Exact | Method::Likelihood => {
+            misalignment.is_some_and(|m| m.abs() > core::f64::consts::FRAC_PI_2)
+        }
         Method::Paper => scale_error.is_some_and(|s| s < -1.0),
     }
 }

@@ -1,6 +1,6 @@
 //! What the scatter says about the table, and the codes about the noise.
 
-use crate::estimate::Estimate;
+use crate::estimate::{Estimate, Method};
 use crate::stats::chi_squared_p_value;
 use crate::{Finding, FindingKind, Output, Position, Quantizer};
 
@@ -69,9 +69,25 @@ pub fn table(
     findings
 }
 
+/// Inflation of a mean's variance by slow noise from which it is worth a word.
+const SLOW_NOISE: f64 = 1.5;
+
+/// Noise within dwells that averaging does not reduce as it should.
+#[must_use]
+pub fn slow_noise(run: &str, estimate: &Estimate) -> Option<Finding> {
+    let inflation = estimate.scatter?.inflation;
+    (inflation > SLOW_NOISE).then(|| Finding {
+        kind: FindingKind::SlowNoise,
+        place: run.to_owned(),
+        observed: format!("variance of a dwell's mean {inflation:.1} times that of white noise"),
+        limit: format!("{SLOW_NOISE}"),
+        remedy: "it is in the uncertainty; shorter dwells at more angles, or a longer warm-up, use the time better".into(),
+    })
+}
+
 /// What the codes say about noise and quantization.
 #[must_use]
-pub fn noise(run: &str, positions: &[&Position], output: &Output) -> Vec<Finding> {
+pub fn noise(run: &str, positions: &[&Position], output: &Output, method: Method) -> Vec<Finding> {
     if output.quantizer == Quantizer::None {
         return Vec::new();
     }
@@ -88,6 +104,10 @@ pub fn noise(run: &str, positions: &[&Position], output: &Output) -> Vec<Finding
                 .into(),
         });
     }
+    if method == Method::Likelihood {
+        // It takes codes as intervals: neither little noise nor code zero is a trap for it.
+        return findings;
+    }
     let variances: Vec<f64> =
         positions.iter().filter_map(|p| p.readings.std()).map(|s| s * s).collect();
     if let Some(pooled) = crate::stats::mean(&variances).filter(|v| *v < LITTLE_DITHER_LSB2) {
@@ -96,7 +116,7 @@ pub fn noise(run: &str, positions: &[&Position], output: &Output) -> Vec<Finding
             place: run.to_owned(),
             observed: format!("codes scatter by {:.2} LSB within dwells", pooled.sqrt()),
             limit: format!("{:.2} LSB", LITTLE_DITHER_LSB2.sqrt()),
-            remedy: "averages are off by up to half an LSB, differently at every angle: spread the angles over many LSB, or add noise (raise the bandwidth)".into(),
+            remedy: "averages are off by up to half an LSB, differently at every angle: use --method likelihood, or add noise (raise the bandwidth)".into(),
         });
     }
     let near = |p: &&&Position| {
@@ -110,7 +130,7 @@ pub fn noise(run: &str, positions: &[&Position], output: &Output) -> Vec<Finding
             place: run.to_owned(),
             observed: format!("{near_zero} of {total} dwells within 1 + 4σ of code zero"),
             limit: "|mean code| > 1 + 4σ".into(),
-            remedy: "the sign rule is off there by up to half an LSB; shift the angles by a degree if it matters".into(),
+            remedy: "the sign rule is off there by up to half an LSB: use --method likelihood, or shift the angles by a degree".into(),
         });
     }
     findings

@@ -18,7 +18,12 @@ pub fn erfcx(x: f64) -> f64 {
             3_209.377_589_138_469_5,
             0.185_777_706_184_603_15,
         ],
-        [23.601_290_952_344_122, 244.024_637_934_444_17, 1_282.616_526_077_372_3, 2_844.236_833_439_171],
+        [
+            23.601_290_952_344_122,
+            244.024_637_934_444_17,
+            1_282.616_526_077_372_3,
+            2_844.236_833_439_171,
+        ],
     );
     const MIDDLE: ([f64; 9], [f64; 8]) = (
         [
@@ -183,7 +188,8 @@ mod tests {
             assert!((p.ln - q.ln).abs() < 1e-12 * p.ln.abs().max(1.0));
             assert!((p.lower_ratio - q.upper_ratio).abs() < 1e-10 * p.lower_ratio);
             let h = 1e-6 * (b - a);
-            let by_b = (IntervalProbability::of(a, b + h).ln - IntervalProbability::of(a, b - h).ln)
+            let by_b = (IntervalProbability::of(a, b + h).ln
+                - IntervalProbability::of(a, b - h).ln)
                 / (2.0 * h);
             assert!((by_b / p.upper_ratio - 1.0).abs() < 1e-6, "{a} {b}");
         }

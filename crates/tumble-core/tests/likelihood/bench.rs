@@ -67,7 +67,8 @@ impl Truth {
                 standard_uncertainty_m_s2: 0.0,
                 source: GravitySource::Stated,
             },
-            angle_uncertainty: (self.stated_arcmin > 0.0).then(|| Angle::from_arcmin(self.stated_arcmin)),
+            angle_uncertainty: (self.stated_arcmin > 0.0)
+                .then(|| Angle::from_arcmin(self.stated_arcmin)),
             range: None,
             vertical_lean: Angle::from_rad(self.upright.unwrap_or(0.0)),
         }

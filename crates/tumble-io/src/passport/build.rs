@@ -1,11 +1,13 @@
 //! From a judged experiment to its passport: names and shapes, no arithmetic.
 
 use tumble_core::assess::{Assessment, Interval, PooledParameter, RunAssessment};
-use tumble_core::estimate::{Estimate as RunFit, EstimateOptions, Method, Parameter, Weights};
+use tumble_core::estimate::{
+    Estimate as RunFit, EstimateOptions, Method, Parameter, Ranged, Split, Weights,
+};
 use tumble_core::linalg::Matrix;
 use tumble_core::term::TermTest;
 use tumble_core::{
-    Experiment, GravitySource, NominalScaleSource, Quantizer, QuantizerOffset, Severity,
+    ARCMIN_RAD, Experiment, GravitySource, NominalScaleSource, Quantizer, QuantizerOffset, Severity,
 };
 
 use super::types as wire;
@@ -86,7 +88,8 @@ pub fn build(
             method: method_name(options.method).into(),
             weights: match (options.method, options.weights) {
                 (Method::Paper, _) | (_, Weights::Equal) => "equal".into(),
-                (_, Weights::Angle) => "angle".into(),
+                (Method::Likelihood, Weights::Stated) => "stated".into(),
+                (_, Weights::Angle | Weights::Stated) => "angle".into(),
             },
             level: options.level,
             targets: wire::Targets {
@@ -107,6 +110,7 @@ fn method_name(method: Method) -> &'static str {
     match method {
         Method::Paper => "paper",
         Method::Exact => "exact",
+        Method::Likelihood => "likelihood",
     }
 }
 
@@ -282,6 +286,7 @@ fn run(
         residual_std_lsb: e.and_then(|e| e.residual_std_lsb),
         reading_std_lsb: r.reading_std_lsb,
         condition_number: e.and_then(|e| finite(e.condition)),
+        scatter: e.and_then(|e| e.scatter.as_ref()).map(scatter),
         correlations: e.map(correlations).unwrap_or_default(),
         settled_at: e.and_then(|e| e.stabilization.settled_at),
         sequential: e.map(sequential).unwrap_or_default(),
@@ -311,11 +316,36 @@ fn run_estimate(e: &RunFit, parameter: Parameter, k0: f64, level: f64) -> Option
         unit: parameter.unit().into(),
         lsb: (parameter == Parameter::Bias).then(|| tumble_core::assess::in_lsb(value, k0)),
         standard_uncertainty: u,
-        degrees_of_freedom: u.map(|_| e.degrees_of_freedom as f64),
+        degrees_of_freedom: u.and_then(|_| finite(e.effective_dof[parameter.index()])),
         level: interval.map(|_| level),
         interval,
         ..wire::Estimate::default()
     })
+}
+
+fn scatter(s: &tumble_core::estimate::Scatter) -> wire::Scatter {
+    let ranged = |r: Ranged, unit: f64| wire::Ranged {
+        value: r.value / unit,
+        interval: [r.low / unit, r.high / unit],
+    };
+    wire::Scatter {
+        noise_lsb: ranged(s.noise_lsb, 1.0),
+        noise_is_bound: s.noise_is_bound,
+        level_lsb: ranged(s.level_lsb, 1.0),
+        angle_arcmin: ranged(s.angle_rad, ARCMIN_RAD),
+        total_lsb: ranged(s.total_lsb, 1.0),
+        total_arcmin: ranged(s.total_rad, ARCMIN_RAD),
+        correlation: s.correlation,
+        split: match s.split {
+            Split::NotAsked => "not_asked",
+            Split::Undetermined => "undetermined",
+            Split::Determined { level: true, angle: true } => "both",
+            Split::Determined { level: true, .. } => "level",
+            Split::Determined { .. } => "angle",
+        }
+        .into(),
+        inflation: s.inflation,
+    }
 }
 
 fn correlations(e: &RunFit) -> Vec<wire::Correlation> {

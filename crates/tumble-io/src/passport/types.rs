@@ -187,11 +187,36 @@ pub struct Run {
     pub reading_std_lsb: Option<f64>,
     /// `null`: infinite, a parameter is not determined.
     pub condition_number: Option<f64>,
+    /// Absent where the method does not tell noise and scatter apart.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scatter: Option<Scatter>,
     pub correlations: Vec<Correlation>,
     pub settled_at: Option<usize>,
     pub sequential: Vec<Sequential>,
     pub residuals: Vec<Residual>,
     pub error_level_lsb: Option<RunErrorLevel>,
+}
+
+/// A value with its interval, at the level of `options`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Ranged {
+    pub value: f64,
+    pub interval: [f64; 2],
+}
+
+/// Noise within dwells and scatter between them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Scatter {
+    pub noise_lsb: Ranged,
+    pub noise_is_bound: bool,
+    pub level_lsb: Ranged,
+    pub angle_arcmin: Ranged,
+    pub total_lsb: Ranged,
+    pub total_arcmin: Ranged,
+    pub correlation: Option<f64>,
+    /// `undetermined`, `level`, `angle`, `both`, or `not_asked`.
+    pub split: String,
+    pub inflation: f64,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

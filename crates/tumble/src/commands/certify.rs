@@ -17,7 +17,7 @@ use crate::interrupt;
 pub(crate) fn run(args: &CertifyArgs) -> Exit {
     let Some(options) = options(args) else {
         complain(
-            "--method paper is unweighted by definition; leave --weights out, or use --method exact",
+            "--method paper is unweighted by definition, and --weights stated is for --method likelihood; leave --weights out",
         );
         return Exit::Usage;
     };
@@ -72,11 +72,17 @@ fn is_failure(problem: &Problem) -> bool {
 }
 
 fn options(args: &CertifyArgs) -> Option<CertifyOptions> {
-    let (method, weights) = match (args.method, args.weights) {
-        (MethodArg::Paper, Some(WeightsArg::Angle)) => return None,
-        (MethodArg::Paper, _) => (Method::Paper, Weights::Equal),
-        (MethodArg::Exact, Some(WeightsArg::Equal)) => (Method::Exact, Weights::Equal),
-        (MethodArg::Exact, _) => (Method::Exact, Weights::Angle),
+    let method = match args.method {
+        MethodArg::Paper => Method::Paper,
+        MethodArg::Exact => Method::Exact,
+        MethodArg::Likelihood => Method::Likelihood,
+    };
+    let weights = match (args.method, args.weights) {
+        (MethodArg::Paper, Some(WeightsArg::Angle | WeightsArg::Stated))
+        | (MethodArg::Exact, Some(WeightsArg::Stated)) => return None,
+        (MethodArg::Paper, _) | (_, Some(WeightsArg::Equal)) => Weights::Equal,
+        (_, Some(WeightsArg::Stated)) => Weights::Stated,
+        (_, Some(WeightsArg::Angle) | None) => Weights::Angle,
     };
     Some(CertifyOptions {
         estimate: EstimateOptions { method, weights, level: args.level },

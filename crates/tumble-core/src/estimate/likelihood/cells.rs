@@ -152,7 +152,8 @@ mod tests {
     #[test]
     fn derivatives_are_those_of_the_value() {
         let ends = ConverterEnds { min_code: None, max_code: Some(Code(5)) };
-        let cells = Cells::of(&codes(&[(-1, 3), (0, 40), (1, 7), (5, 2)]), Quantizer::Truncate, &ends);
+        let cells =
+            Cells::of(&codes(&[(-1, 3), (0, 40), (1, 7), (5, 2)]), Quantizer::Truncate, &ends);
         for (level, sigma) in [(0.3, 0.2), (-0.9, 1.0), (4.0, 3.0), (20.0, 0.5)] {
             let h = 1e-5 * sigma;
             let (up, down, here) = (
@@ -163,7 +164,10 @@ mod tests {
             let slope = (up.value - down.value) / (2.0 * h);
             let curvature = (up.slope - down.slope) / (2.0 * h);
             assert!((slope / here.slope - 1.0).abs() < 1e-6, "{level} {sigma}: {slope} {here:?}");
-            assert!((curvature / here.curvature - 1.0).abs() < 1e-6, "{level}: {curvature} {here:?}");
+            assert!(
+                (curvature / here.curvature - 1.0).abs() < 1e-6,
+                "{level}: {curvature} {here:?}"
+            );
         }
     }
 

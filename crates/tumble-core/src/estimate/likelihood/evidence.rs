@@ -143,7 +143,8 @@ fn summit(cells: &Cells, sigma: f64, jet: &impl Fn(f64) -> Jet) -> (f64, Jet) {
         return (at, jet(at));
     }
     let middle = cells.middle();
-    let (mut low, mut high) = (lo.max(middle - 1e3 * sigma - 1e3), hi.min(middle + 1e3 * sigma + 1e3));
+    let (mut low, mut high) =
+        (lo.max(middle - 1e3 * sigma - 1e3), hi.min(middle + 1e3 * sigma + 1e3));
     let mut at = middle.clamp(low, high);
     let mut here = jet(at);
     for _ in 0..60 {
@@ -175,7 +176,9 @@ impl Curve {
         let zero = Jet { value: 0.0, ..top };
         let left = knots(&jet, top_at, zero, -1.0, sigma, lo);
         let right = knots(&jet, top_at, zero, 1.0, sigma, hi);
-        let grain = left.windows(2).chain(right.windows(2))
+        let grain = left
+            .windows(2)
+            .chain(right.windows(2))
             .filter(|w| w[1].1.value < -0.3 && w[1].1.value > -12.0)
             .map(|w| (w[1].0 - w[0].0).abs())
             .fold(f64::INFINITY, f64::min);
@@ -191,9 +194,19 @@ impl Curve {
             side(Box::new(below.into_iter().rev()), f64::NEG_INFINITY),
             side(Box::new(above.into_iter()), f64::INFINITY),
         );
-        let mut curve =
-            Self { cells, sigma, inflation, top: top.value, pieces, grain, centre: top_at, variance: 1.0, allowed };
-        let open = all.first().is_some_and(|k| k.1.value > -1.0) || all.last().is_some_and(|k| k.1.value > -1.0);
+        let mut curve = Self {
+            cells,
+            sigma,
+            inflation,
+            top: top.value,
+            pieces,
+            grain,
+            centre: top_at,
+            variance: 1.0,
+            allowed,
+        };
+        let open = all.first().is_some_and(|k| k.1.value > -1.0)
+            || all.last().is_some_and(|k| k.1.value > -1.0);
         if open {
             // A bound only: as wide as one likes.
             curve.variance = f64::INFINITY;
@@ -226,8 +239,11 @@ impl Curve {
 
     /// `ln ∫ e^{ℓ(x) − ½ w (x−m)²} dx`, and under that weight mean − m and variance of `x`.
     fn integral(&self, m: f64, w: f64) -> Jet {
-        let height =
-            self.pieces.iter().map(|p| Weighted::of(p, m, w).highest()).fold(f64::NEG_INFINITY, f64::max);
+        let height = self
+            .pieces
+            .iter()
+            .map(|p| Weighted::of(p, m, w).highest())
+            .fold(f64::NEG_INFINITY, f64::max);
         let (mut i0, mut i1, mut i2) = (0.0, 0.0, 0.0);
         // Pieces are neighbours: where one ends the next begins, with the same density.
         let mut last_end = None;
@@ -493,7 +509,10 @@ mod tests {
                     if theirs > e.marginal(e.centre(), v).value - 12.0 {
                         let error = (ours.value - theirs).abs();
                         worst = worst.max(error);
-                        assert!(error < 0.02, "{list:?} {sigma} v {v} off {off}: {ours:?} {theirs}");
+                        assert!(
+                            error < 0.02,
+                            "{list:?} {sigma} v {v} off {off}: {ours:?} {theirs}"
+                        );
                     }
                 }
             }
@@ -503,17 +522,28 @@ mod tests {
 
     #[test]
     fn derivatives_are_those_of_the_value() {
-        for (list, sigma) in [(&[(7, 1500)][..], 0.1), (&[(7, 1495), (8, 5)][..], 0.1), (&[(3, 7), (4, 90)][..], 0.5)] {
+        for (list, sigma) in [
+            (&[(7, 1500)][..], 0.1),
+            (&[(7, 1495), (8, 5)][..], 0.1),
+            (&[(3, 7), (4, 90)][..], 0.5),
+        ] {
             let e = Evidence::of(&cells(list, Quantizer::Floor), sigma, 1.0);
             for v in [0.4f64, 0.1].map(|s| s * s) {
                 for off in [-0.7, -0.2, 0.1, 0.4] {
                     let m = e.centre() + off;
                     let h = 1e-4;
-                    let (up, down, here) = (e.marginal(m + h, v), e.marginal(m - h, v), e.marginal(m, v));
+                    let (up, down, here) =
+                        (e.marginal(m + h, v), e.marginal(m - h, v), e.marginal(m, v));
                     let slope = (up.value - down.value) / (2.0 * h);
                     let curvature = (up.slope - down.slope) / (2.0 * h);
-                    assert!((slope - here.slope).abs() < 1e-5 * (1.0 + slope.abs()), "{list:?} {off}: {slope} {here:?}");
-                    assert!((curvature - here.curvature).abs() < 1e-4 * (1.0 + curvature.abs()), "{list:?} {off}: {curvature} {here:?}");
+                    assert!(
+                        (slope - here.slope).abs() < 1e-5 * (1.0 + slope.abs()),
+                        "{list:?} {off}: {slope} {here:?}"
+                    );
+                    assert!(
+                        (curvature - here.curvature).abs() < 1e-4 * (1.0 + curvature.abs()),
+                        "{list:?} {off}: {curvature} {here:?}"
+                    );
                 }
             }
         }
@@ -526,7 +556,8 @@ mod tests {
         // A box of 1 − 2·3.2σ: variance about width²/12.
         assert!((quiet.centre() - 7.5).abs() < 1e-6);
         assert!((quiet.variance() - 0.94f64.powi(2) / 12.0).abs() < 0.003, "{}", quiet.variance());
-        let noisy = Evidence::of(&cells(&[(6, 242), (7, 1016), (8, 242)], Quantizer::Floor), 0.5, 1.0);
+        let noisy =
+            Evidence::of(&cells(&[(6, 242), (7, 1016), (8, 242)], Quantizer::Floor), 0.5, 1.0);
         let Evidence::Gaussian { centre, variance, .. } = noisy else { panic!("{noisy:?}") };
         assert!((centre - 7.5).abs() < 1e-9);
         assert!((variance / ((0.25 + 1.0 / 12.0) / 1500.0) - 1.0).abs() < 0.1, "{variance}");

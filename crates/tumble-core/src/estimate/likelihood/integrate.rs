@@ -56,7 +56,11 @@ pub(super) struct Solution {
 /// factors are log-concave, so the fixed point is the only one.
 ///
 /// `sites` holds the Gaussians and is a start for the next call.
-pub(super) fn integrate(dwells: &[Dwell], variances: &[f64], sites: &mut [Site]) -> Option<Solution> {
+pub(super) fn integrate(
+    dwells: &[Dwell],
+    variances: &[f64],
+    sites: &mut [Site],
+) -> Option<Solution> {
     let mut ln_gaussian = 0.0;
     let mut curves = false;
     for ((d, v), site) in dwells.iter().zip(variances).zip(sites.iter_mut()) {

@@ -101,7 +101,8 @@ impl Materials {
 fn plain(readings: &Readings, setting: &Setting<'_>) -> Plain {
     let mean = readings.mean().unwrap_or(0.0);
     let std = readings.std();
-    let away = setting.quantizer != Quantizer::Truncate || mean.abs() > 1.5 + 5.0 * std.unwrap_or(0.0);
+    let away =
+        setting.quantizer != Quantizer::Truncate || mean.abs() > 1.5 + 5.0 * std.unwrap_or(0.0);
     Plain {
         mean,
         samples: readings.samples().max(1) as f64,
@@ -130,7 +131,13 @@ fn quiet_sigma(code_variance: f64) -> f64 {
 /// Least noise that is distinguished, LSB: below, codes change at edges that are sharp for all purposes.
 pub(super) const SMALLEST_SIGMA: f64 = 0.002;
 
-fn mean_material(own: &Plain, code_variance: f64, sigma: f64, inflation: f64, quantizer: Quantizer) -> Material {
+fn mean_material(
+    own: &Plain,
+    code_variance: f64,
+    sigma: f64,
+    inflation: f64,
+    quantizer: Quantizer,
+) -> Material {
     let variance = inflation * code_variance / own.samples;
     if quantizer == Quantizer::Truncate && !own.clear && sigma > 0.0 {
         let (centre, steepness) = truncated_level(own.mean, sigma);
@@ -146,7 +153,9 @@ fn truncated_level(mean: f64, sigma: f64) -> (f64, f64) {
     for _ in 0..50 {
         let value = truncated_mean(level, sigma);
         let h = 1e-4 * sigma;
-        steepness = ((truncated_mean(level + h, sigma) - truncated_mean(level - h, sigma)) / (2.0 * h)).max(1e-3);
+        steepness = ((truncated_mean(level + h, sigma) - truncated_mean(level - h, sigma))
+            / (2.0 * h))
+            .max(1e-3);
         let step = (mean - value) / steepness;
         level += step.clamp(-sigma, sigma);
         if step.abs() < 1e-12 * (1.0 + level.abs()) {
@@ -186,7 +195,11 @@ fn rebuilt_cells(own: &Plain, setting: &Setting<'_>) -> Cells {
             // p₊ − p₋ = off, p₊ + p₋ = E(n − middle)².
             let square = (v * (n - 1.0) / n + off * off).min(1.0);
             let (up, down) = (0.5 * (square + off), 0.5 * (square - off));
-            if up >= 0.0 && down >= 0.0 { (middle - 1.0, [down, 1.0 - up - down, up]) } else { (below - 1.0, two) }
+            if up >= 0.0 && down >= 0.0 {
+                (middle - 1.0, [down, 1.0 - up - down, up])
+            } else {
+                (below - 1.0, two)
+            }
         }
         _ => (below - 1.0, two),
     };
@@ -211,7 +224,9 @@ fn inflation(positions: &[&Position]) -> f64 {
             Readings::Values { blocks, .. } => (blocks, ValueMoments::RESOLUTION.powi(2)),
             Readings::Averaged { .. } => continue,
         };
-        let (Some(of_mean), Some(std)) = (blocks.variance_of_mean(), p.readings.std()) else { continue };
+        let (Some(of_mean), Some(std)) = (blocks.variance_of_mean(), p.readings.std()) else {
+            continue;
+        };
         let independent = std * std / p.readings.samples() as f64;
         seen += of_mean * unit;
         white += independent;
@@ -261,11 +276,19 @@ mod tests {
         };
         let mut h = crate::CodeHistogram::default();
         [(41, 30), (42, 900), (43, 70)].iter().for_each(|(n, k)| h.record_many(Code(*n), *k));
-        let own = Plain { mean: h.mean().unwrap(), samples: 1000.0, variance: h.std().map(|s| s * s), clear: true };
+        let own = Plain {
+            mean: h.mean().unwrap(),
+            samples: 1000.0,
+            variance: h.std().map(|s| s * s),
+            clear: true,
+        };
         let rebuilt = rebuilt_cells(&own, &setting);
         let direct = Cells::of(&h, Quantizer::Floor, &setting.ends);
         for (a, b) in rebuilt.cells.iter().zip(&direct.cells) {
-            assert!((a.count - b.count).abs() < 1e-6 && a.lo == b.lo && a.hi == b.hi, "{a:?} {b:?}");
+            assert!(
+                (a.count - b.count).abs() < 1e-6 && a.lo == b.lo && a.hi == b.hi,
+                "{a:?} {b:?}"
+            );
         }
     }
 }
@@ -295,16 +318,24 @@ mod tmp {
                 let (mut ours, mut brute) = (0.0, 0.0);
                 for c in &dwells {
                     let e = Evidence::of(c, s, 1.0);
-                    ours += e.marginal(e.centre(), 1e4).value + 0.5 * (2.0 * std::f64::consts::PI * 1e4).ln();
+                    ours += e.marginal(e.centre(), 1e4).value
+                        + 0.5 * (2.0 * std::f64::consts::PI * 1e4).ln();
                     let (lo, hi) = c.extent();
                     let n = 20000;
                     let (a, b) = (lo - 1.0, hi + 1.0);
-                    let v: Vec<f64> = (0..=n).map(|i| c.jet(a + (b - a) * f64::from(i) / f64::from(n), s, 1.0).value).collect();
+                    let v: Vec<f64> = (0..=n)
+                        .map(|i| c.jet(a + (b - a) * f64::from(i) / f64::from(n), s, 1.0).value)
+                        .collect();
                     let t = v.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-                    let b1 = t + (v.iter().map(|x| (x - t).exp()).sum::<f64>() * (b - a) / f64::from(n)).ln();
+                    let b1 = t
+                        + (v.iter().map(|x| (x - t).exp()).sum::<f64>() * (b - a) / f64::from(n))
+                            .ln();
                     brute += b1;
-                    let o1 = e.marginal(e.centre(), 1e4).value + 0.5 * (2.0 * std::f64::consts::PI * 1e4).ln();
-                    if (o1 - b1).abs() > 0.05 { println!("BAD {s} {o1} {b1} {:?} {}", c.cells, e.centre()); }
+                    let o1 = e.marginal(e.centre(), 1e4).value
+                        + 0.5 * (2.0 * std::f64::consts::PI * 1e4).ln();
+                    if (o1 - b1).abs() > 0.05 {
+                        println!("BAD {s} {o1} {b1} {:?} {}", c.cells, e.centre());
+                    }
                 }
                 println!("{rep} {s}: {ours:.4} {brute:.4}");
             }

@@ -16,6 +16,7 @@ mod frame;
 mod integrate;
 mod material;
 mod noise;
+mod profile;
 mod scatter;
 mod search;
 mod spread;
@@ -27,16 +28,18 @@ use frame::Frame;
 use integrate::{Dwell, Site, Solution, integrate};
 use material::{Material, Materials};
 use noise::Noise;
+use profile::Profile;
 use scatter::{Beforehand, Components, Exploration, Surface};
 use spread::{Reading, Spread};
 
 use super::equations::equations;
 use super::exact;
 use super::paper::{Fit, ToParameters, WeightedRow};
-use super::types::{EstimateError, EstimateOptions, Residual, Weights};
+use super::types::{EstimateError, EstimateOptions, ProfileIntervals, Residual, Weights};
 use super::{Setting, scatter_ratio};
 use crate::Position;
 use crate::linalg::dot3;
+use crate::stats::student_factor;
 
 /// Shares of the angle in the scatter, and totals for each, at which the surface is evaluated.
 const NODES: (usize, usize) = (6, 16);
@@ -71,7 +74,8 @@ pub(super) fn fit(
     let k0 = setting.nominal_scale_m_s2_per_lsb;
     let to = ToParameters::Exact { gravity_m_s2: g, nominal_scale: k0 };
     let materials = Materials::of(positions, setting);
-    let failed = || EstimateError::NotConverged { iterations: EXPANSIONS, last_change: f64::INFINITY };
+    let failed =
+        || EstimateError::NotConverged { iterations: EXPANSIONS, last_change: f64::INFINITY };
     let mut reference = start(positions, setting)?;
     let mut expansions = 0;
     let adjusted = loop {
@@ -80,7 +84,8 @@ pub(super) fn fit(
         let reading = Reading { basis: &a.basis, reference, to };
         let next = reading.unknowns(a.solution.shift);
         let size = next[1].hypot(next[2]);
-        let moved = next.iter().zip(reference).map(|(x, y)| (x - y).abs() / size).fold(0.0, f64::max);
+        let moved =
+            next.iter().zip(reference).map(|(x, y)| (x - y).abs() / size).fold(0.0, f64::max);
         if moved < NEAR_ENOUGH || expansions == EXPANSIONS {
             break a;
         }
@@ -88,7 +93,7 @@ pub(super) fn fit(
     };
     let reading = Reading { basis: &adjusted.basis, reference, to };
     let free = options.weights == Weights::Angle;
-    let spread = uncertainty(&adjusted, &materials, &reading, free);
+    let spread = uncertainty(&adjusted, &materials, &reading, free, options.level);
     if spread.values.iter().any(|v| !v.is_finite()) {
         return Err(failed());
     }
@@ -142,10 +147,13 @@ fn adjust(
     let mut surface = Surface::new(&dwells);
     let exploration = surface.explore(components, shares, points, noise.start)?;
     let highest = surface.highest(&exploration.summits)?;
-    let scatter = spread::mean_scatter(&exploration.nodes, &dwells, |n| surface.components(n.total, n.share));
+    let scatter =
+        spread::mean_scatter(&exploration.nodes, &dwells, |n| surface.components(n.total, n.share));
     let mut sites = surface.sites().to_vec();
     let solution = integrate(&dwells, &scatter, &mut sites)?;
-    let summary = table::ScatterPoints::of(&exploration, &highest, |total, share| surface.components(total, share));
+    let summary = table::ScatterPoints::of(&exploration, &highest, |total, share| {
+        surface.components(total, share)
+    });
     Some(Adjusted { frame, basis, dwells, noise, exploration, solution, sites, scatter, summary })
 }
 
@@ -156,7 +164,13 @@ fn smallest_variance(frame: &Frame) -> f64 {
 }
 
 /// Uncertainty over the surface, or as the residuals show it; what is not known of the noise is added.
-fn uncertainty(a: &Adjusted, materials: &Materials, reading: &Reading<'_>, shape_is_free: bool) -> Spread {
+fn uncertainty(
+    a: &Adjusted,
+    materials: &Materials,
+    reading: &Reading<'_>,
+    shape_is_free: bool,
+    level: f64,
+) -> Spread {
     let mut spread = spread::over_surface(&a.exploration.nodes, reading);
     let shown = shape_is_free
         .then(|| spread::from_residuals(&a.dwells, &a.sites, &a.scatter, &a.solution, reading))
@@ -166,10 +180,36 @@ fn uncertainty(a: &Adjusted, materials: &Materials, reading: &Reading<'_>, shape
         spread.dof = dof;
     }
     if let Some(by_noise) = shift_by_noise(a, materials, reading) {
-        let u: [f64; 3] = core::array::from_fn(|i| spread.covariance[(i, i)].sqrt().hypot(by_noise[i]));
+        let u: [f64; 3] =
+            core::array::from_fn(|i| spread.covariance[(i, i)].sqrt().hypot(by_noise[i]));
         spread.covariance = spread::with_deviations(&spread.covariance, u);
     }
+    if shown.is_none() && a.dwells.iter().any(|d| matches!(d.evidence, Evidence::Curve(_))) {
+        spread.profile = profiled(a, reading, &spread, level);
+    }
     spread
+}
+
+/// Intervals from the profile likelihood at the mean scatter. They reach as far as Student's factor of each parameter
+/// would, so that what is not known of the scatter is in them too.
+fn profiled(
+    a: &Adjusted,
+    reading: &Reading<'_>,
+    spread: &Spread,
+    level: f64,
+) -> Option<[[f64; 2]; 3]> {
+    let profile = Profile::new(&a.dwells, &a.scatter);
+    let gradients = reading.gradients(a.solution.shift);
+    let (at, _) = reading.of(&a.solution);
+    let mut out = [[0.0; 2]; 3];
+    for (i, interval) in out.iter_mut().enumerate() {
+        let own = a.solution.covariance.quadratic(gradients[i]).sqrt();
+        let reach = student_factor(level, spread.dof[i])? * spread.covariance[(i, i)].sqrt() / own;
+        let [low, high] =
+            profile.ends(a.solution.shift, gradients[i], &a.solution.covariance, reach)?;
+        *interval = [at[i] + low, at[i] + high];
+    }
+    Some(out)
 }
 
 /// Half the change of the parameters over ± one standard deviation of `ln σ`, where the noise shapes the dwells.
@@ -238,13 +278,16 @@ fn present(
     let squares: f64 = residuals.iter().map(|r| r.lsb * r.lsb).sum();
     let stated = setting.bench.angle_uncertainty.map_or(0.0, |x| x.rad());
     let expected = |j: usize| {
-        a.dwells[j].evidence.variance() + a.frame.known_variances[j] + a.frame.steepness[j] * stated * stated
+        a.dwells[j].evidence.variance()
+            + a.frame.known_variances[j]
+            + a.frame.steepness[j] * stated * stated
     };
     Fit {
         values: spread.values,
         covariance: Some(spread.covariance),
         degrees_of_freedom,
         dof: spread.dof,
+        profile: spread.profile.map(|ends| ProfileIntervals { level: options.level, ends }),
         residual_std_lsb: Some((squares / degrees_of_freedom as f64).sqrt()),
         variance_ratio: scatter_ratio(
             residuals.iter().enumerate().map(|(j, r)| (r.lsb, expected(j))),

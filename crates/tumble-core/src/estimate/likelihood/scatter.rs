@@ -83,8 +83,7 @@ pub(super) struct Surface<'a> {
 
 impl<'a> Surface<'a> {
     pub fn new(dwells: &'a [Dwell]) -> Self {
-        let steep: Vec<f64> =
-            dwells.iter().map(|d| d.steepness).filter(|s| *s > 0.0).collect();
+        let steep: Vec<f64> = dwells.iter().map(|d| d.steepness).filter(|s| *s > 0.0).collect();
         let precision: f64 = dwells
             .iter()
             .map(|d| (d.evidence.variance() + d.known_variance).recip().powi(2))
@@ -110,7 +109,8 @@ impl<'a> Surface<'a> {
     /// Solution at a point.
     pub fn at(&mut self, total: f64, share: f64) -> Option<Solution> {
         for (v, d) in self.variances.iter_mut().zip(self.dwells) {
-            *v = d.known_variance + total * ((1.0 - share) + share * d.steepness / self.mean_steepness);
+            *v = d.known_variance
+                + total * ((1.0 - share) + share * d.steepness / self.mean_steepness);
         }
         self.evaluations += 1;
         let out = integrate(self.dwells, &self.variances, &mut self.sites);
@@ -213,7 +213,11 @@ impl<'a> Surface<'a> {
                 let (a, b) = (x - left_x, right_x - x);
                 let (fa, fb) = (here - left, here - right);
                 let denominator = fa * b + fb * a;
-                let to = if denominator > 0.0 { 0.5 * (fa * b * b - fb * a * a) / denominator } else { 0.0 };
+                let to = if denominator > 0.0 {
+                    0.5 * (fa * b * b - fb * a * a) / denominator
+                } else {
+                    0.0
+                };
                 let next = x - to;
                 if next > low && to.abs() > 1e-3 {
                     let value = f(self, next)?;
@@ -304,7 +308,8 @@ impl<'a> Surface<'a> {
                 for k in 0..shares {
                     let turn = core::f64::consts::PI * (k as f64 + 0.5) / shares as f64;
                     let share = 0.5 * (1.0 - turn.cos());
-                    at = self.ridge(share, beforehand.both / shares as f64, at, points, &mut out)?;
+                    at =
+                        self.ridge(share, beforehand.both / shares as f64, at, points, &mut out)?;
                 }
                 self.ridge(1.0, beforehand.angle, at, points, &mut out)?;
             }
@@ -327,7 +332,11 @@ impl<'a> Surface<'a> {
             let x = self.climb((top.total + self.floor).ln(), share, 0.2)?.0;
             let next = self.summit(share, x)?;
             if next.ln_integral > top.ln_integral {
-                if share > top.share { low = top.share } else { high = top.share }
+                if share > top.share {
+                    low = top.share
+                } else {
+                    high = top.share
+                }
                 top = next;
             } else if share > top.share {
                 high = share;

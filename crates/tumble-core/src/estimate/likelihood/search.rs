@@ -31,7 +31,11 @@ pub(super) fn crossing(
         }
         // A secant step, when it points on, else a longer one.
         let secant = -next.slope * (next.x - here.x) / (next.slope - here.slope);
-        step = if secant * step > 0.0 { (1.3 * secant).abs().clamp(0.3 * step.abs(), 3.0 * step.abs()) * step.signum() } else { 2.0 * step };
+        step = if secant * step > 0.0 {
+            (1.3 * secant).abs().clamp(0.3 * step.abs(), 3.0 * step.abs()) * step.signum()
+        } else {
+            2.0 * step
+        };
         here = next;
     }
     let (mut a, mut b) = bracket?;
@@ -40,7 +44,9 @@ pub(super) fn crossing(
         let curvature = (b.slope - a.slope) / (b.x - a.x);
         // What is still to gain between the ends.
         let best = if a.slope.abs() < b.slope.abs() { a } else { b };
-        if best.slope.abs().min(a.slope.abs()) * (b.x - a.x).abs() < worth || (b.x - a.x).abs() < 1e-4 {
+        if best.slope.abs().min(a.slope.abs()) * (b.x - a.x).abs() < worth
+            || (b.x - a.x).abs() < 1e-4
+        {
             let x = best.x - best.slope / curvature;
             return Some((x, curvature));
         }
@@ -64,11 +70,14 @@ mod tests {
 
     #[test]
     fn a_crossing_is_found_and_the_bounds_are_kept() {
-        let (x, curvature) = crossing(0.0, 0.1, (-5.0, 5.0), 1e-4, |x| Some(10.0 * (2.0 - x))).unwrap();
+        let (x, curvature) =
+            crossing(0.0, 0.1, (-5.0, 5.0), 1e-4, |x| Some(10.0 * (2.0 - x))).unwrap();
         assert!((x - 2.0).abs() < 1e-9 && (curvature + 10.0).abs() < 1e-9);
-        let (x, _) = crossing(0.0, 0.1, (-5.0, 5.0), 1e-4, |x| Some(-(x + 3.0).exp() + 1e-3)).unwrap();
+        let (x, _) =
+            crossing(0.0, 0.1, (-5.0, 5.0), 1e-4, |x| Some(-(x + 3.0).exp() + 1e-3)).unwrap();
         assert!((x - -5.0).abs() < 1e-9);
-        let (x, _) = crossing(3.0, 0.3, (-5.0, 5.0), 1e-4, |x| Some(100.0 * (0.3 - x.powi(3)))).unwrap();
+        let (x, _) =
+            crossing(3.0, 0.3, (-5.0, 5.0), 1e-4, |x| Some(100.0 * (0.3 - x.powi(3)))).unwrap();
         assert!((x - 0.3f64.cbrt()).abs() < 0.01, "{x}");
     }
 }

@@ -20,6 +20,8 @@ pub(super) struct Spread {
     pub covariance: Matrix,
     /// Effective degrees of freedom, a parameter each.
     pub dof: [f64; 3],
+    /// Intervals from the profile likelihood at the level asked for, where they are not `value ± t u`.
+    pub profile: Option<[[f64; 2]; 3]>,
 }
 
 /// From shifts in the basis to parameters.
@@ -43,16 +45,14 @@ impl Reading<'_> {
     }
 
     /// Gradient of each parameter by the shift.
-    fn gradients(&self, shift: [f64; 3]) -> [[f64; 3]; 3] {
+    pub fn gradients(&self, shift: [f64; 3]) -> [[f64; 3]; 3] {
         let (_, jacobian) = self.to.at(self.unknowns(shift));
         let columns: [[f64; 3]; 3] = core::array::from_fn(|c| {
             let mut unit = [0.0; 3];
             unit[c] = 1.0;
             self.basis.unknowns(unit)
         });
-        core::array::from_fn(|i| {
-            columns.map(|x| (0..3).map(|k| jacobian[(i, k)] * x[k]).sum())
-        })
+        core::array::from_fn(|i| columns.map(|x| (0..3).map(|k| jacobian[(i, k)] * x[k]).sum()))
     }
 }
 
@@ -99,6 +99,7 @@ pub(super) fn over_surface(nodes: &[Node], reading: &Reading<'_>) -> Spread {
         values: core::array::from_fn(|i| at[i] + first[i] / sum),
         covariance: with_deviations(&mean_covariance, u),
         dof,
+        profile: None,
     }
 }
 
@@ -115,7 +116,11 @@ pub(super) fn with_deviations(c: &Matrix, u: [f64; 3]) -> Matrix {
 }
 
 /// Variances of scatter that give each dwell its mean precision over the surface.
-pub(super) fn mean_scatter(nodes: &[Node], dwells: &[Dwell], components: impl Fn(&Node) -> (f64, f64)) -> Vec<f64> {
+pub(super) fn mean_scatter(
+    nodes: &[Node],
+    dwells: &[Dwell],
+    components: impl Fn(&Node) -> (f64, f64),
+) -> Vec<f64> {
     let top = nodes.iter().map(|n| n.ln_weight).fold(f64::NEG_INFINITY, f64::max);
     let mut precision = vec![0.0; dwells.len()];
     let mut sum = 0.0;
@@ -159,7 +164,9 @@ pub(super) fn from_residuals(
     let dominated = dwells
         .iter()
         .zip(scatter)
-        .filter(|(d, v)| matches!(d.evidence, Evidence::Gaussian { .. }) || d.evidence.variance() < **v)
+        .filter(|(d, v)| {
+            matches!(d.evidence, Evidence::Gaussian { .. }) || d.evidence.variance() < **v
+        })
         .count();
     if 10 * dominated < 9 * dwells.len() {
         return None;
@@ -190,7 +197,9 @@ pub(super) fn from_residuals(
         }
         // Σ_jk w_j w_k (x_jᵀ C x_k)² = tr (C S C S) with S = Σ w x xᵀ.
         let cs: [[f64; 3]; 3] = core::array::from_fn(|a| {
-            core::array::from_fn(|b| (0..3).map(|k| solution.covariance.0[a][k] * outer.0[k][b]).sum())
+            core::array::from_fn(|b| {
+                (0..3).map(|k| solution.covariance.0[a][k] * outer.0[k][b]).sum()
+            })
         });
         for a in 0..3 {
             for b in 0..3 {

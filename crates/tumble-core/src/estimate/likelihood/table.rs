@@ -89,7 +89,12 @@ impl ScatterPoints {
 }
 
 /// Noise and scatter of an adjusted run at a level of confidence.
-pub(super) fn scatter(a: &Adjusted, materials: &Materials, unknowns: [f64; 3], level: f64) -> Scatter {
+pub(super) fn scatter(
+    a: &Adjusted,
+    materials: &Materials,
+    unknowns: [f64; 3],
+    level: f64,
+) -> Scatter {
     let full_scale = unknowns[1].hypot(unknowns[2]);
     let points = &a.summary;
     let reach = normal_quantile(0.5 + 0.5 * level) * a.noise.ln_sd;
