@@ -16,8 +16,9 @@ const LARGEST_SIGMA: f64 = 3.0;
 const OWN_NOISE_LSB: f64 = 0.3;
 /// Log-likelihood that the last step of a search may still be worth.
 const WORTH: f64 = 0.03;
-/// Step of the numerical derivative by `ln σ`.
-const LN_STEP: f64 = 0.005;
+/// Step of the derivative by `ln σ`: wide enough that the pieces of the curves, which differ from one `σ` to the next by
+/// hundredths, do not show in it.
+const LN_STEP: f64 = 0.08;
 
 /// `σ` with what is known about it.
 #[derive(Debug, Clone, Copy, PartialEq)]
