@@ -4,7 +4,7 @@
 use tumble_core::assess::{Verdict, assess};
 use tumble_core::estimate::{EstimateOptions, Method, Parameter, Weights};
 use tumble_core::simulate::{Preset, Truth, experiment, parse_plan};
-use tumble_core::stats::{mean, sample_std};
+use tumble_core::stats::{mean, sample_std, student_factor, student_p_value};
 use tumble_core::{Angle, FindingKind, Severity};
 
 fn long() -> bool {
@@ -26,7 +26,8 @@ fn fraction_se(p: f64, n: usize) -> f64 {
 #[test]
 fn a_run_is_unbiased_and_its_uncertainty_is_its_scatter() {
     let n = if long() { 4000 } else { 400 };
-    let options = EstimateOptions::default();
+    // The likelihood's own claims are in `likelihood.rs`; here the shape of the scatter is given.
+    let options = EstimateOptions { method: Method::Exact, ..EstimateOptions::default() };
     for plan in ["paper", "-65:65:60", "-65:65:12"] {
         let base =
             Truth { runs: 1, angles_deg: parse_plan(plan).unwrap(), ..quick(Preset::Paper2) };
@@ -47,8 +48,7 @@ fn a_run_is_unbiased_and_its_uncertainty_is_its_scatter() {
             for p in Parameter::ALL {
                 let i = p.index();
                 let (v, u) = (e.values[i].unwrap(), e.standard_uncertainty(p).unwrap());
-                let t =
-                    tumble_core::stats::student_factor(0.95, e.degrees_of_freedom as f64).unwrap();
+                let t = e.coverage_factor(p, 0.95).unwrap();
                 errors[i].push(v - truth[i]);
                 claimed[i].push(u * u);
                 covered[i] += usize::from((v - truth[i]).abs() <= t * u);
@@ -78,10 +78,15 @@ fn a_run_is_unbiased_and_its_uncertainty_is_its_scatter() {
 fn intersections_under_cover_and_the_pooled_interval_does_not() {
     // Gaussian run estimates stand for the adjustment: what is checked is how runs are put together.
     let n = if long() { 200_000 } else { 20_000 };
-    // Without spread the truth is inside all five intervals with 0.95⁵ = 0.774 (the method prints 79 %).
-    for (between, intersection_covers, empty) in [(0.0, 0.95f64.powi(5), 0.0), (1.0, 0.43, 0.26)] {
+    // Without spread the truth is inside all five intervals with 0.95⁵ = 0.774; with a spread of one standard error with
+    // P(|t57| < 2.0025/√2)⁵ = 0.413, and 27.7 % are empty (numpy, 10⁶ trials: tests/data/make_intersections.py). The method
+    // prints 79, 43 and 26 %: those belong to k = 2 and a known standard error.
+    let half = student_factor(0.95, 57.0).unwrap() / 2f64.sqrt();
+    let spread = (1.0 - student_p_value(half, 57.0).unwrap()).powi(5);
+    for (between, intersection_covers, empty) in [(0.0, 0.95f64.powi(5), 0.0), (1.0, spread, 0.277)]
+    {
         let c = pooled_coverage(n, between);
-        let tolerance = 4.0 * fraction_se(0.5, n) + 0.005;
+        let tolerance = 4.0 * fraction_se(0.5, n);
         assert!(
             (c.intersection - intersection_covers).abs() < tolerance,
             "between {between}: {c:?}"
@@ -135,6 +140,9 @@ fn pooled_coverage(n: usize, between: f64) -> Coverage {
         for (run, value) in runs.iter_mut().zip(&values) {
             let e = run.estimate.as_mut().unwrap();
             e.values[0] = Some(*value);
+            // The template's own residuals and degrees of freedom have no part in it.
+            e.weighted_rows.clear();
+            e.effective_dof[0] = 57.0;
             let s2: f64 = chi.sample(&mut rng) / 57.0;
             e.covariance.as_mut().unwrap()[(0, 0)] = s2;
         }
@@ -286,8 +294,8 @@ fn upright_dwells_that_lean_as_stated_keep_the_coverage() {
             let e = experiment(&Truth { seed: 900_000 + seed as u64, ..base.clone() });
             let a = assess(&e, &EstimateOptions::default()).unwrap();
             let e = a.runs[0].estimate.as_ref().unwrap();
-            let t = tumble_core::stats::student_factor(0.95, e.degrees_of_freedom as f64).unwrap();
             for p in Parameter::ALL {
+                let t = e.coverage_factor(p, 0.95).unwrap();
                 let u = e.standard_uncertainty(p).unwrap();
                 let error = e.values[p.index()].unwrap() - truth[p.index()];
                 covered[p.index()] += usize::from(error.abs() <= t * u);

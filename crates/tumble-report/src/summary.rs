@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use tumble_io::passport::{Estimate, Finding, Passport};
+use tumble_io::passport::{Estimate, Finding, Passport, Scatter};
 
 use crate::merge::merged;
 use crate::numbers::{interval, significant, value_with_uncertainty};
@@ -132,6 +132,7 @@ fn numbers(out: &mut String, p: &Passport) {
         );
         row(out, "error level", &text);
     }
+    table_repeats(out, p);
     let settled: Vec<String> =
         p.runs.iter().filter_map(|r| r.settled_at.map(|n| n.to_string())).collect();
     if !settled.is_empty() && settled.len() <= 12 {
@@ -148,6 +149,29 @@ fn numbers(out: &mut String, p: &Passport) {
             ),
         );
     }
+}
+
+/// How good the table is, a figure a run.
+fn table_repeats(out: &mut String, p: &Passport) {
+    let runs: Vec<&Scatter> = p.runs.iter().filter_map(|r| r.scatter.as_ref()).collect();
+    let text = match runs.as_slice() {
+        [] => return,
+        [one] => {
+            let [low, high] = one.total_arcmin.interval;
+            format!(
+                "to {} arcmin at 0° ({})",
+                significant(one.total_arcmin.value, 2),
+                interval(low, high)
+            )
+        }
+        many if many.len() <= 12 => {
+            let each: Vec<String> =
+                many.iter().map(|s| significant(s.total_arcmin.value, 2)).collect();
+            format!("to {} arcmin at 0°", each.join(", "))
+        }
+        _ => return,
+    };
+    row(out, "table repeats", &text);
 }
 
 fn findings(out: &mut String, p: &Passport) {

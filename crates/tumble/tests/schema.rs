@@ -225,7 +225,7 @@ fn passports() -> Vec<(String, Value)> {
     sets.sort();
     assert!(sets.len() >= 10, "only {} reference sets in {}", sets.len(), folder.display());
     for set in sets {
-        for method in [Method::Exact, Method::Paper] {
+        for method in [Method::Likelihood, Method::Exact, Method::Paper] {
             let estimate = EstimateOptions { method, ..EstimateOptions::default() };
             let options = CertifyOptions { estimate, ..CertifyOptions::default() };
             let name = format!("{} {method:?}", set.file_name().unwrap().to_string_lossy());

@@ -8,6 +8,7 @@ mod note;
 mod parts;
 mod provenance;
 mod result;
+mod scatter;
 mod style;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -64,6 +65,7 @@ pub fn html(passport: &Passport) -> String {
                     (evidence::influence(&page))
                     (evidence::budget(&page))
                     (evidence::runs(&page))
+                    (scatter::section_of(&page))
                     (findings::findings(&page))
                     (provenance::provenance(&page))
                     (note::note(&page))
