@@ -145,8 +145,18 @@ fn adjust(
     let curved = dwells.iter().any(|d| matches!(d.evidence, Evidence::Curve(_)));
     let (shares, points) = if curved { FEWER_NODES } else { NODES };
     let mut surface = Surface::new(&dwells);
-    let exploration = surface.explore(components, shares, points, noise.start)?;
+    let mut exploration = surface.explore(components, shares, points, noise.start)?;
     let highest = surface.highest(&exploration.summits)?;
+    exploration.nodes.iter_mut().for_each(|n| n.ln_weight += noise.own_width.ln());
+    for other in &noise.others {
+        let there = dwells_at(other.sigma);
+        let more = Surface::new(&there).explore(components, shares, points, Some(other.start))?;
+        exploration.nodes.extend(
+            more.nodes
+                .into_iter()
+                .map(|n| scatter::Node { ln_weight: n.ln_weight + other.width.ln(), ..n }),
+        );
+    }
     let scatter =
         spread::mean_scatter(&exploration.nodes, &dwells, |n| surface.components(n.total, n.share));
     let mut sites = surface.sites().to_vec();
@@ -214,7 +224,7 @@ fn profiled(
 
 /// Half the change of the parameters over ± one standard deviation of `ln σ`, where the noise shapes the dwells.
 fn shift_by_noise(a: &Adjusted, materials: &Materials, reading: &Reading<'_>) -> Option<[f64; 3]> {
-    if materials.sigma_is_known() {
+    if materials.sigma_is_known() || !a.noise.others.is_empty() {
         return None;
     }
     let at = |factor: f64| {
