@@ -6,6 +6,14 @@ use crate::bench::{Truth, equal};
 use crate::bound::{cramer_rao, unquantized_deviations, unquantized_errors};
 use crate::study::{each, errors, fit, names, runs};
 
+/// Errors of one run, and what they are held against.
+struct Case {
+    ours: [f64; 3],
+    unquantized: [f64; 3],
+    bound: [f64; 3],
+    unquantized_sd: [f64; 3],
+}
+
 /// Root mean square error over the bound, with its standard error. Paired: the same runs unquantized, weighted with
 /// the true scatter, have a known variance; only the difference to them is left to chance.
 fn over_bound(base: &Truth, n: usize) -> [(f64, f64); 3] {
@@ -14,21 +22,20 @@ fn over_bound(base: &Truth, n: usize) -> [(f64, f64); 3] {
         let run = truth.run(seed + 1);
         let ours =
             errors(&truth, &fit(&truth, &run.positions, Method::Likelihood, Weights::Angle, 0.95));
-        (
+        Case {
             ours,
-            unquantized_errors(&truth, &run.analogue_lsb),
-            cramer_rao(&truth),
-            unquantized_deviations(&truth),
-        )
+            unquantized: unquantized_errors(&truth, &run.analogue_lsb),
+            bound: cramer_rao(&truth),
+            unquantized_sd: unquantized_deviations(&truth),
+        }
     });
     core::array::from_fn(|i| {
-        let mean = |f: &dyn Fn(&([f64; 3], [f64; 3], [f64; 3], [f64; 3])) -> f64| {
-            all.iter().map(f).sum::<f64>() / n as f64
-        };
-        let bound = mean(&|x| x.2[i].powi(2));
-        let excess = mean(&|x| x.0[i].powi(2) - x.1[i].powi(2));
-        let spread = mean(&|x| (x.0[i].powi(2) - x.1[i].powi(2) - excess).powi(2)).sqrt();
-        let reference = mean(&|x| x.3[i].powi(2));
+        let mean = |f: &dyn Fn(&Case) -> f64| all.iter().map(f).sum::<f64>() / n as f64;
+        let bound = mean(&|x| x.bound[i].powi(2));
+        let excess = mean(&|x| x.ours[i].powi(2) - x.unquantized[i].powi(2));
+        let spread =
+            mean(&|x| (x.ours[i].powi(2) - x.unquantized[i].powi(2) - excess).powi(2)).sqrt();
+        let reference = mean(&|x| x.unquantized_sd[i].powi(2));
         let ratio = ((reference + excess) / bound).sqrt();
         (ratio, spread / (n as f64).sqrt() / bound / (2.0 * ratio))
     })

@@ -81,10 +81,16 @@ impl Cells {
         cells
     }
 
-    /// Codes that did not occur inside of the record belong to a cell too, once cells hold several codes.
+    /// Codes that did not occur inside of the record belong to a cell too, once cells hold several codes. Where the
+    /// half-line of a converter's end begins is not moved.
     fn close_gaps(&mut self) {
         for i in 1..self.cells.len() {
-            let middle = 0.5 * (self.cells[i - 1].hi + self.cells[i].lo);
+            let (below, above) = (self.cells[i - 1], self.cells[i]);
+            let middle = match (below.lo.is_infinite(), above.hi.is_infinite()) {
+                (true, _) => below.hi,
+                (_, true) => above.lo,
+                _ => 0.5 * (below.hi + above.lo),
+            };
             self.cells[i - 1].hi = middle;
             self.cells[i].lo = middle;
         }
@@ -122,6 +128,11 @@ impl Cells {
     pub fn one_sided(&self) -> bool {
         let (lo, hi) = self.extent();
         self.cells.len() == 1 && (lo.is_infinite() || hi.is_infinite())
+    }
+
+    /// Whether a single code was seen, or a single end.
+    pub fn one_code(&self) -> bool {
+        self.cells.len() == 1
     }
 
     /// A level to start from: the middle of the cells, weighted.
@@ -186,6 +197,13 @@ mod tests {
         let ends = ConverterEnds { min_code: Some(Code(-5)), max_code: Some(Code(5)) };
         let both = Cells::of(&codes(&[(-5, 1), (0, 1), (5, 1)]), Quantizer::Floor, &ends);
         assert_eq!(both.extent(), (f64::NEG_INFINITY, f64::INFINITY));
+        // Condensed or not, saturation begins where it begins.
+        let mut h = codes(&[(1000, 40)]);
+        (700..950).step_by(3).for_each(|n| h.record(Code(n)));
+        let ends = ConverterEnds { min_code: None, max_code: Some(Code(1000)) };
+        let condensed = Cells::of(&h, Quantizer::Floor, &ends);
+        assert_eq!(condensed.cells.last().map(|c| c.lo), Some(1000.0));
+        let ends = ConverterEnds { min_code: Some(Code(-5)), max_code: Some(Code(5)) };
         let saturated = Cells::of(&codes(&[(5, 100)]), Quantizer::Floor, &ends);
         assert!(saturated.one_sided());
         let jet = saturated.jet(4.0, 0.5, 1.0);

@@ -11,6 +11,8 @@ const DEEPEST: f64 = 20.0;
 const STEP_RATIO: f64 = 3.0;
 /// Where the first piece ends.
 const SHALLOWEST: f64 = 0.01;
+/// Parameters of the model.
+const PARAMETERS: f64 = 3.0;
 /// Log-likelihood below the top down to which a level is not contradicted: two standard deviations of a Gaussian.
 const ALLOWED: f64 = 2.0;
 /// Departure from a parabola at 1.5 and 3 standard deviations, over their square, up to which a dwell counts as
@@ -123,6 +125,17 @@ impl Evidence {
         }
     }
 
+    /// Variance with which the dwell takes part among `count` of them: a box of one code says nothing inside and all at
+    /// its edges, so that many boxes narrow the parameters like `1/count`, not like `1/√count`.
+    pub fn resolution(&self, count: usize) -> f64 {
+        match self {
+            Self::Curve(c) if c.cells.one_code() => {
+                c.variance * (PARAMETERS / count as f64).min(1.0).powi(2)
+            }
+            _ => self.variance(),
+        }
+    }
+
     /// Variance of the level when nothing else is known.
     pub fn variance(&self) -> f64 {
         match self {
@@ -174,8 +187,12 @@ impl Curve {
         };
         let (lo, hi) = cells.extent();
         let zero = Jet { value: 0.0, ..top };
-        let left = knots(&jet, top_at, zero, -1.0, sigma, lo);
-        let right = knots(&jet, top_at, zero, 1.0, sigma, hi);
+        // Toward an end of the converter that was always reached, the plateau goes on.
+        let side = |side: f64, edge: f64| {
+            let open = cells.one_sided() && edge.is_infinite();
+            if open { Vec::new() } else { knots(&jet, top_at, zero, side, sigma, edge) }
+        };
+        let (left, right) = (side(-1.0, lo), side(1.0, hi));
         let grain = left
             .windows(2)
             .chain(right.windows(2))
@@ -401,7 +418,7 @@ fn knots(
     // curve bends within a step (the far edge of a code comes near), the step is halved.
     for _ in 0..60 {
         let drop = -here.value;
-        if drop > DEEPEST || drop < 1e-9 {
+        if !(1e-9..=DEEPEST).contains(&drop) {
             break;
         }
         let mut ahead = STEP_RATIO.ln() * drop / (side * -here.slope);
@@ -455,8 +472,9 @@ fn pieces(knots: &[(f64, Jet)]) -> Vec<Piece> {
             from: side * x,
             width: f64::INFINITY,
             value: j.value,
-            slope: side * j.slope,
-            curvature: j.curvature.min(0.0),
+            // From its top on a plateau is level, whatever crumbs of slope are left there.
+            slope: if j.value == 0.0 { 0.0 } else { (side * j.slope).min(0.0) },
+            curvature: if j.value == 0.0 { 0.0 } else { j.curvature.min(0.0) },
         })
     };
     outer(knots.first(), -1.0).into_iter().chain(between).chain(outer(knots.last(), 1.0)).collect()
@@ -561,5 +579,42 @@ mod tests {
         let Evidence::Gaussian { centre, variance, .. } = noisy else { panic!("{noisy:?}") };
         assert!((centre - 7.5).abs() < 1e-9);
         assert!((variance / ((0.25 + 1.0 / 12.0) / 1500.0) - 1.0).abs() < 0.1, "{variance}");
+    }
+
+    #[test]
+    fn a_saturated_dwell_is_a_plateau_with_one_edge() {
+        for (code, side) in [(-1000, -1.0), (1000, 1.0)] {
+            let mut h = CodeHistogram::default();
+            h.record_many(Code(code), 200);
+            let ends = ConverterEnds { min_code: Some(Code(-1000)), max_code: Some(Code(1000)) };
+            let c = Cells::of(&h, Quantizer::Truncate, &ends);
+            let e = Evidence::of(&c, 8.0, 1.0);
+            assert!(e.variance().is_infinite());
+            for v in [0.05, 0.3, 2.0, 100.0] {
+                // Far inside nothing is known; a little outside it is what a fine sum says.
+                let inside = e.marginal(side * (1100.0 + 5.0 * f64::sqrt(v)), v);
+                assert!(inside.value.abs() < 1e-3 && inside.slope.abs() < 1e-4, "{v}: {inside:?}");
+                assert!(inside.curvature.abs() < 1e-4, "{v}: {inside:?}");
+                for m in [1035.0, 1020.0, 1010.0] {
+                    let theirs = {
+                        let n = 40_000;
+                        let (a, b) = (side * m - 60.0, side * m + 60.0);
+                        let h = (b - a) / f64::from(n);
+                        let sum: f64 = (0..=n)
+                            .map(|i| a + h * f64::from(i))
+                            .map(|x| {
+                                (c.jet(x, 8.0, 1.0).value - 0.5 * (x - side * m).powi(2) / v).exp()
+                            })
+                            .sum();
+                        (sum * h).ln() - 0.5 * (2.0 * PI * v).ln()
+                    };
+                    let ours = e.marginal(side * m, v).value;
+                    assert!(
+                        (ours - theirs).abs() < 0.02 * (1.0 + theirs.abs()),
+                        "{m} {v}: {ours} {theirs}"
+                    );
+                }
+            }
+        }
     }
 }

@@ -16,8 +16,6 @@ pub(super) struct Frame {
     pub steepness: Vec<f64>,
     /// Variance that is not estimated: lean of upright dwells `R² u(δ)⁴/2`, and a stated angle uncertainty.
     pub known_variances: Vec<f64>,
-    /// Expectation of what leaning costs, LSB; zero on the table.
-    pub lean: Vec<f64>,
 }
 
 impl Frame {
@@ -38,7 +36,6 @@ impl Frame {
             origins: Vec::with_capacity(n),
             steepness: Vec::with_capacity(n),
             known_variances: Vec::with_capacity(n),
-            lean: Vec::with_capacity(n),
         };
         for p in positions {
             let (row, steepness, known, lean) = match p.seat.vertical_sign() {
@@ -58,7 +55,6 @@ impl Frame {
             out.rows.push(row);
             out.steepness.push(steepness);
             out.known_variances.push(known);
-            out.lean.push(lean);
         }
         out
     }

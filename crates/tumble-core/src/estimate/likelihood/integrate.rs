@@ -42,8 +42,6 @@ pub(super) struct Solution {
     pub covariance: Symmetric3,
     /// `ln ∫ L(θ) dθ`: the restricted likelihood of the scatter.
     pub ln_integral: f64,
-    /// Sweeps that it took.
-    pub sweeps: usize,
     /// Whether they settled.
     pub settled: bool,
 }
@@ -96,7 +94,7 @@ pub(super) fn integrate(
     let (covariance, pull, ln_det) = assemble(dwells, sites)?;
     let shift = covariance.times(pull);
     let ln_integral = ln_gaussian + ln_curves + 0.5 * dot3(pull, shift) - 0.5 * ln_det;
-    ln_integral.is_finite().then_some(Solution { shift, covariance, ln_integral, sweeps, settled })
+    ln_integral.is_finite().then_some(Solution { shift, covariance, ln_integral, settled })
 }
 
 /// A dwell in the company of all others: its marginal likelihood at what they say, and what they say.
@@ -179,7 +177,7 @@ fn sweep(dwells: &[Dwell], variances: &[f64], sites: &mut [Site], step: f64) -> 
         let own = dot3(d.row, along);
         let stiffer = new.precision - old.precision;
         let factor = 1.0 + stiffer * own;
-        if !(factor > 1e-12) {
+        if factor <= 1e-12 {
             continue;
         }
         let gain = (new.pull - old.pull - stiffer * dot3(d.row, shift)) / factor;
@@ -189,4 +187,122 @@ fn sweep(dwells: &[Dwell], variances: &[f64], sites: &mut [Site], step: f64) -> 
         out.moved = out.moved.max(gain.abs() * own.sqrt()).max(stiffer.abs() * own * 0.3);
     }
     Some(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::cells::Cells;
+    use super::*;
+    use crate::{Code, CodeHistogram, ConverterEnds, Quantizer};
+
+    /// Six quiet dwells: boxes and half-boxes, as a plan in an orthonormal basis would show them.
+    fn quiet_dwells(sigma: f64) -> Vec<Dwell> {
+        let lists: [&[(i32, u64)]; 6] = [
+            &[(4, 200)],
+            &[(2, 150), (3, 50)],
+            &[(1, 200)],
+            &[(1, 195), (2, 5)],
+            &[(2, 200)],
+            &[(5, 200)],
+        ];
+        let (a, b, c) = (6f64.sqrt(), 17.5f64.sqrt(), (448.0f64 / 12.0).sqrt());
+        lists
+            .iter()
+            .enumerate()
+            .map(|(i, list)| {
+                let mut h = CodeHistogram::default();
+                list.iter().for_each(|(n, k)| h.record_many(Code(*n), *k));
+                let x = i as f64 - 2.5;
+                let cells = Cells::of(&h, Quantizer::Floor, &ConverterEnds::default());
+                Dwell {
+                    row: [1.0 / a, x / b, (x * x - 35.0 / 12.0) / c],
+                    origin: 2.9,
+                    steepness: 1.0,
+                    known_variance: 0.0,
+                    evidence: Evidence::of(&cells, sigma, 1.0),
+                }
+            })
+            .collect()
+    }
+
+    /// Brute force: mean, covariance and integral by a sum over a grid.
+    fn by_summing(dwells: &[Dwell], v: f64, about: &Solution) -> ([f64; 3], [f64; 3], f64) {
+        let n = 44i32;
+        let sd: [f64; 3] = core::array::from_fn(|i| about.covariance.0[i][i].sqrt());
+        let step = 5.5 / f64::from(n / 2);
+        let (mut sum, mut first, mut second) = (0.0, [0.0; 3], [0.0; 3]);
+        for index in 0..n * n * n {
+            let at = [index % n, index / n % n, index / (n * n)];
+            let s: [f64; 3] = core::array::from_fn(|i| {
+                about.shift[i] + sd[i] * step * (f64::from(at[i]) - 0.5 * f64::from(n - 1))
+            });
+            let value: f64 = dwells
+                .iter()
+                .map(|d| d.evidence.marginal(d.origin + dot3(d.row, s), v).value)
+                .sum();
+            let w = (value - about.ln_integral).exp();
+            sum += w;
+            for i in 0..3 {
+                first[i] += w * s[i];
+                second[i] += w * s[i] * s[i];
+            }
+        }
+        let mean: [f64; 3] = core::array::from_fn(|i| first[i] / sum);
+        let deviation = core::array::from_fn(|i| (second[i] / sum - mean[i] * mean[i]).sqrt());
+        let volume: f64 = sd.iter().map(|x| x * step).product();
+        // The solution leaves out (2π)^{3/2}, the same for every scatter.
+        let ln = about.ln_integral + (sum * volume).ln() - 1.5 * (2.0 * core::f64::consts::PI).ln();
+        (mean, deviation, ln)
+    }
+
+    #[test]
+    fn boxes_are_integrated_as_a_fine_sum_does_it() {
+        let dwells = quiet_dwells(0.08);
+        for tau in [0.05f64, 0.2, 1.0] {
+            let v = tau * tau;
+            let mut sites = vec![Site::default(); dwells.len()];
+            let ours = integrate(&dwells, &vec![v; dwells.len()], &mut sites).unwrap();
+            assert!(ours.settled);
+            let (mean, deviation, ln) = by_summing(&dwells, v, &ours);
+            for i in 0..3 {
+                let sd = ours.covariance.0[i][i].sqrt();
+                let off = (mean[i] - ours.shift[i]) / sd;
+                let ratio = deviation[i] / sd;
+                assert!(off.abs() < 0.05, "τ {tau}, {i}: mean off by {off:.3} standard deviations");
+                assert!((ratio - 1.0).abs() < 0.05, "τ {tau}, {i}: standard deviation {ratio:.3}");
+            }
+            assert!((ln - ours.ln_integral).abs() < 0.05, "τ {tau}: {ln} {}", ours.ln_integral);
+        }
+    }
+
+    #[test]
+    fn gaussian_dwells_are_weighted_least_squares_and_reml() {
+        let dwells: Vec<Dwell> = quiet_dwells(0.08)
+            .into_iter()
+            .enumerate()
+            .map(|(i, d)| Dwell {
+                evidence: Evidence::Gaussian {
+                    centre: 2.9 + [0.3, -0.2, 0.1, 0.4, -0.1, 0.2][i],
+                    variance: 0.01,
+                    ln_integral: 0.0,
+                },
+                ..d
+            })
+            .collect();
+        let v = 0.03;
+        let mut sites = vec![Site::default(); 6];
+        let ours = integrate(&dwells, &[v; 6], &mut sites).unwrap();
+        // Orthonormal rows and equal variances: projections, and (n − p)/2 logarithms of the variance.
+        let y = [0.3, -0.2, 0.1, 0.4, -0.1, 0.2];
+        let rest: f64 = (0..3).fold(y.iter().map(|x| x * x).sum(), |rest, i| {
+            let projection: f64 = dwells.iter().zip(y).map(|(d, y)| d.row[i] * y).sum();
+            assert!((ours.shift[i] - projection).abs() < 1e-12);
+            rest - projection * projection
+        });
+        let reml = -0.5 * 3.0 * (2.0 * core::f64::consts::PI * 0.04f64).ln()
+            - 0.5 * rest / 0.04
+            - 1.5 * (2.0 * core::f64::consts::PI).ln();
+        assert!((ours.ln_integral - reml).abs() < 1e-9, "{} {reml}", ours.ln_integral);
+        assert!((ours.covariance.0[0][0] - 0.04).abs() < 1e-12);
+    }
 }

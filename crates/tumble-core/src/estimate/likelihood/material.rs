@@ -30,8 +30,8 @@ pub(super) struct Materials {
     pub dwells: Vec<Material>,
     /// `σ` to start from, LSB.
     pub sigma_start: f64,
-    /// Whether any dwell needs `σ` itself.
-    pub has_codes: bool,
+    /// Whether `σ` stands already: real numbers, or codes that noise dithers.
+    pub sigma_is_known: bool,
     /// Degrees of freedom behind a `σ` that comes from the codes' variance.
     pub noise_dof: f64,
     /// `f ≥ 1`: variance of a dwell's mean over that of as many independent samples.
@@ -86,15 +86,9 @@ impl Materials {
                 }
             })
             .collect();
-        let has_codes = dwells.iter().any(|d| matches!(d, Material::Codes(_)));
         // Quiet codes: the variance over all phases is σ/√π for small σ.
         let sigma_start = if dithered { sigma } else { quiet_sigma(code_variance) };
-        Self { dwells, sigma_start, has_codes, noise_dof, inflation }
-    }
-
-    /// Whether `σ` stands already, from the variance of codes that noise dithers.
-    pub fn sigma_is_known(&self) -> bool {
-        !self.has_codes || self.dwells.iter().any(|d| matches!(d, Material::Mean { .. }))
+        Self { dwells, sigma_start, sigma_is_known: dithered, noise_dof, inflation }
     }
 }
 
@@ -289,56 +283,6 @@ mod tests {
                 (a.count - b.count).abs() < 1e-6 && a.lo == b.lo && a.hi == b.hi,
                 "{a:?} {b:?}"
             );
-        }
-    }
-}
-
-#[cfg(test)]
-mod tmp {
-    use super::*;
-    use crate::{CodeHistogram, ConverterEnds};
-    #[test]
-    fn sigma_flat() {
-        use rand_core::SeedableRng;
-        use rand_distr::{Distribution, StandardNormal, StandardUniform};
-        let _ = StandardUniform;
-        for rep in 0..4u64 {
-            let mut rng = rand_pcg::Pcg64::seed_from_u64(rep);
-            let mut dwells = vec![];
-            for j in 0..60 {
-                let mu = 100.0 + f64::from(j) * 0.618_033_98 * 7.0;
-                let mut h = CodeHistogram::default();
-                for _ in 0..1500 {
-                    let z: f64 = StandardNormal.sample(&mut rng);
-                    h.record(Quantizer::Truncate.code(mu + 0.1 * z).unwrap());
-                }
-                dwells.push(Cells::of(&h, Quantizer::Truncate, &ConverterEnds::default()));
-            }
-            for s in [0.06, 0.07, 0.08, 0.09, 0.1, 0.11, 0.12, 0.13] {
-                let (mut ours, mut brute) = (0.0, 0.0);
-                for c in &dwells {
-                    let e = Evidence::of(c, s, 1.0);
-                    ours += e.marginal(e.centre(), 1e4).value
-                        + 0.5 * (2.0 * std::f64::consts::PI * 1e4).ln();
-                    let (lo, hi) = c.extent();
-                    let n = 20000;
-                    let (a, b) = (lo - 1.0, hi + 1.0);
-                    let v: Vec<f64> = (0..=n)
-                        .map(|i| c.jet(a + (b - a) * f64::from(i) / f64::from(n), s, 1.0).value)
-                        .collect();
-                    let t = v.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-                    let b1 = t
-                        + (v.iter().map(|x| (x - t).exp()).sum::<f64>() * (b - a) / f64::from(n))
-                            .ln();
-                    brute += b1;
-                    let o1 = e.marginal(e.centre(), 1e4).value
-                        + 0.5 * (2.0 * std::f64::consts::PI * 1e4).ln();
-                    if (o1 - b1).abs() > 0.05 {
-                        println!("BAD {s} {o1} {b1} {:?} {}", c.cells, e.centre());
-                    }
-                }
-                println!("{rep} {s}: {ours:.4} {brute:.4}");
-            }
         }
     }
 }

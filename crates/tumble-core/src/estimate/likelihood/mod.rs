@@ -224,7 +224,7 @@ fn profiled(
 
 /// Half the change of the parameters over ± one standard deviation of `ln σ`, where the noise shapes the dwells.
 fn shift_by_noise(a: &Adjusted, materials: &Materials, reading: &Reading<'_>) -> Option<[f64; 3]> {
-    if materials.sigma_is_known() || !a.noise.others.is_empty() {
+    if materials.sigma_is_known || !a.noise.others.is_empty() {
         return None;
     }
     let at = |factor: f64| {

@@ -86,7 +86,7 @@ impl<'a> Surface<'a> {
         let steep: Vec<f64> = dwells.iter().map(|d| d.steepness).filter(|s| *s > 0.0).collect();
         let precision: f64 = dwells
             .iter()
-            .map(|d| (d.evidence.variance() + d.known_variance).recip().powi(2))
+            .map(|d| (d.evidence.resolution(dwells.len()) + d.known_variance).recip().powi(2))
             .filter(|p| p.is_finite())
             .sum();
         let floor = (dwells.len() as f64 / precision).sqrt();
@@ -147,22 +147,24 @@ impl<'a> Surface<'a> {
             Some(x) => x.max(low),
             None => self.scan(share)?,
         };
-        let found = crossing(start, 0.4, (low, low + 60.0), WORTH, |x| {
-            let solution = self.at(self.total(x), share)?;
-            let around = companies(self.dwells, &self.sites, &solution);
-            let by_total = |d: &Dwell| (1.0 - share) + share * d.steepness / self.mean_steepness;
-            let slope: f64 = around
-                .iter()
-                .zip(self.dwells)
-                .zip(&self.variances)
-                .map(|((c, d), v)| {
-                    let m = d.evidence.marginal(d.origin + c.at, v + c.spread);
-                    0.5 * by_total(d) * (m.curvature + m.slope * m.slope)
-                })
-                .sum();
-            Some(slope * x.exp())
-        })?;
-        Some(found.0)
+        Some(crossing(start, 0.4, (low, low + 60.0), WORTH, |x| self.slope(x, share))?.0)
+    }
+
+    /// Derivative of the restricted log-likelihood by `x = ln(V + floor)`.
+    fn slope(&mut self, x: f64, share: f64) -> Option<f64> {
+        let solution = self.at(self.total(x), share)?;
+        let around = companies(self.dwells, &self.sites, &solution);
+        let by_total = |d: &Dwell| (1.0 - share) + share * d.steepness / self.mean_steepness;
+        let slope: f64 = around
+            .iter()
+            .zip(self.dwells)
+            .zip(&self.variances)
+            .map(|((c, d), v)| {
+                let m = d.evidence.marginal(d.origin + c.at, v + c.spread);
+                0.5 * by_total(d) * (m.curvature + m.slope * m.slope)
+            })
+            .sum();
+        Some(slope * x.exp())
     }
 
     /// Logarithm of the density of the prior of `V`, for `x = ln(V + floor)`: Jeffreys',
@@ -174,7 +176,8 @@ impl<'a> Surface<'a> {
             .iter()
             .map(|d| {
                 let by_total = (1.0 - share) + share * d.steepness / self.mean_steepness;
-                let all = d.evidence.variance() + d.known_variance + total * by_total;
+                let own = d.evidence.resolution(self.dwells.len());
+                let all = own + d.known_variance + total * by_total;
                 (by_total / all).powi(2)
             })
             .filter(|i| i.is_finite())
@@ -393,4 +396,98 @@ fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
             (x, 2.0 / ((1.0 - x * x) * derivative * derivative))
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::cells::Cells;
+    use super::super::evidence::Evidence;
+    use super::*;
+    use crate::{Code, CodeHistogram, ConverterEnds, Quantizer};
+
+    fn dwells(quiet: bool) -> Vec<Dwell> {
+        let n = 20;
+        let a = f64::from(n).sqrt();
+        let b = (0..n).map(|i| (f64::from(i) - 9.5).powi(2)).sum::<f64>().sqrt();
+        (0..n)
+            .map(|i| {
+                let x = f64::from(i) - 9.5;
+                let level = 3.0 + 0.37 * x + 0.3 * (2.3 * x).sin();
+                let evidence = if quiet {
+                    let mut h = CodeHistogram::default();
+                    let code = level.floor();
+                    h.record_many(Code(code as i32), 90 + i as u64 % 3);
+                    h.record_many(Code(code as i32 + 1), if i % 3 == 0 { 7 } else { 0 });
+                    let cells = Cells::of(&h, Quantizer::Floor, &ConverterEnds::default());
+                    Evidence::of(&cells, 0.1, 1.0)
+                } else {
+                    Evidence::Gaussian { centre: level, variance: 0.002, ln_integral: 0.0 }
+                };
+                // The third direction is left to a weak column: a bend.
+                let bend = (x * x - 33.25) / 190.0;
+                Dwell {
+                    row: [1.0 / a, x / b, bend],
+                    origin: 3.0 + 0.37 * x,
+                    steepness: 1.0 + 0.1 * x * x,
+                    known_variance: 0.0,
+                    evidence,
+                }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn the_slope_by_the_scatter_is_that_of_the_restricted_likelihood() {
+        for (quiet, h, tolerance) in [(false, 1e-3, 1e-5), (true, 0.05, 0.05)] {
+            let dwells = dwells(quiet);
+            let mut surface = Surface::new(&dwells);
+            for total in [0.01f64, 0.05, 0.3] {
+                for share in [0.0, 0.4, 1.0] {
+                    let x = (total + surface.floor).ln();
+                    let mut at = |x: f64| {
+                        let v = surface.total(x);
+                        surface.at(v, share).unwrap().ln_integral
+                    };
+                    let numeric = (at(x + h) - at(x - h)) / (2.0 * h);
+                    let analytic = surface.slope(x, share).unwrap();
+                    let off = (numeric - analytic).abs();
+                    assert!(
+                        off < tolerance * (1.0 + analytic.abs()) + 1e-3,
+                        "{quiet} {total} {share}: {numeric} {analytic}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn one_component_that_dominates_gives_students_distribution() {
+        // Over ln V the restricted likelihood times the prior is that of χ²: E[1/V] = (n − p)/RSS.
+        let mut dwells = dwells(false);
+        for d in &mut dwells {
+            if let Evidence::Gaussian { variance, .. } = &mut d.evidence {
+                *variance = 1e-9;
+            }
+        }
+        let mut surface = Surface::new(&dwells);
+        let nodes = surface.explore(Components::Level, 1, 24, None).unwrap().nodes;
+        let top = nodes.iter().map(|n| n.ln_weight).fold(f64::NEG_INFINITY, f64::max);
+        let weight = |n: &Node| (n.ln_weight - top).exp();
+        let sum: f64 = nodes.iter().map(weight).sum();
+        let mean: f64 = nodes.iter().map(|n| weight(n) / n.total).sum::<f64>() / sum;
+        let square: f64 = nodes.iter().map(|n| weight(n) / n.total.powi(2)).sum::<f64>() / sum;
+        let dof = 2.0 / (square / (mean * mean) - 1.0);
+        assert!((dof - 17.0).abs() < 0.01, "{dof}");
+    }
+
+    #[test]
+    fn gauss_and_legendre_integrate_polynomials() {
+        for n in [9, 16] {
+            let sum = |power: i32| -> f64 {
+                gauss_legendre(n).iter().map(|(x, w)| w * x.powi(power)).sum()
+            };
+            assert!((sum(0) - 2.0).abs() < 1e-13);
+            assert!((sum(16) - 2.0 / 17.0).abs() < 1e-13);
+        }
+    }
 }
