@@ -13,5 +13,7 @@ mod coverage;
 mod efficiency;
 #[path = "likelihood/gain.rs"]
 mod gain;
+#[path = "likelihood/range.rs"]
+mod range;
 #[path = "likelihood/study.rs"]
 mod study;

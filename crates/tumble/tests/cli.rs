@@ -233,3 +233,31 @@ fn an_averaged_record_and_an_upright_pair_are_read() {
     assert_eq!(json["inputs"].as_array().unwrap().len(), 8);
     assert!(json["findings"].as_array().unwrap().iter().any(|f| f["id"] == "T0308"));
 }
+
+#[test]
+fn methods_and_weights_that_do_not_go_together_are_refused() {
+    let dir = demo(&["--seed", "3"]);
+    for (method, weights) in [("exact", "stated"), ("paper", "angle"), ("paper", "stated")] {
+        let o = tumble(dir.path(), &["certify", "demo", "--method", method, "--weights", weights]);
+        assert_eq!(code(&o), 2, "{method} {weights}");
+        assert!(err(&o).contains("--weights"), "{}", err(&o));
+    }
+    let stated = tumble(dir.path(), &["certify", "demo", "--weights", "stated", "--json"]);
+    assert!(out(&stated).contains("\"weights\": \"stated\""), "{}", out(&stated));
+}
+
+/// The bench has a converter that ends at ±500 codes: the default method uses those dwells, the others leave them out.
+#[test]
+fn dwells_at_the_converters_ends_are_bounds_for_the_likelihood() {
+    let dir = demo(&["--seed", "3", "--angles", "-40:40:41", "--min-code=-500", "--max-code=500"]);
+    let positions = |o: &Output| -> u64 {
+        let passport: serde_json::Value = serde_json::from_str(&out(o)).unwrap();
+        passport["runs"][0]["positions"].as_u64().unwrap()
+    };
+    let bounds = tumble(dir.path(), &["certify", "demo", "--json"]);
+    assert!(out(&bounds).contains("used as bounds"), "{}", out(&bounds));
+    let averages = tumble(dir.path(), &["certify", "demo", "--json", "--method", "exact"]);
+    assert!(out(&averages).contains("left out"), "{}", out(&averages));
+    assert_eq!(positions(&bounds), 41);
+    assert!(positions(&averages) < 30);
+}

@@ -1,10 +1,11 @@
 //! The exact linear form: right for any size of error.
 
 use super::paper::{Fit, ToParameters, WeightedRow, spread};
-use super::types::{EstimateError, Residual};
+use super::types::{AgainstStated, EstimateError, Residual};
 use super::{Equation, Setting, select};
 use crate::Seat;
 use crate::linalg::{Matrix, Triangular};
+use crate::stats::chi_squared_p_value;
 
 /// Iterations of weights and linearized upright dwells; real data need three to six.
 const MAX_ITERATIONS: usize = 200;
@@ -104,11 +105,19 @@ pub(super) fn fit(
         profile: None,
         residuals,
         residual_std_lsb,
-        variance_ratio: (redundant && stated).then_some(scatter),
+        against_stated: (redundant && stated)
+            .then(|| against_stated(scatter, degrees_of_freedom as f64))
+            .flatten(),
         weighted_rows,
         to_parameters,
         scatter: None,
     })
+}
+
+/// Variance of the residuals over what was stated, against χ².
+fn against_stated(variance_ratio: f64, degrees_of_freedom: f64) -> Option<AgainstStated> {
+    let upper = chi_squared_p_value(variance_ratio * degrees_of_freedom, degrees_of_freedom)?;
+    Some(AgainstStated { ratio: variance_ratio.sqrt(), p_value: upper.min(1.0 - upper) })
 }
 
 /// `(α, β, γ)` of bias, misalignment and scale error.

@@ -15,8 +15,8 @@ pub use equations::{Equation, equations};
 pub use paper::WeightedRow;
 pub use sequential::{SequentialEstimate, Stabilization};
 pub use types::{
-    Estimate, EstimateError, EstimateOptions, Method, Parameter, ProfileIntervals, Ranged,
-    Residual, Scatter, Split, Weights,
+    AgainstStated, Estimate, EstimateError, EstimateOptions, Method, Parameter, ProfileIntervals,
+    Ranged, Residual, Scatter, Split, Weights,
 };
 
 use crate::linalg::{RANK_CONDITION_LIMIT, Triangular};
@@ -81,7 +81,7 @@ pub fn estimate(
         covariance: fit.covariance,
         residuals: fit.residuals,
         residual_std_lsb: fit.residual_std_lsb,
-        variance_ratio: fit.variance_ratio,
+        against_stated: fit.against_stated,
         profile: fit.profile,
         scatter: fit.scatter,
         condition: identifiability.condition,
@@ -92,16 +92,6 @@ pub fn estimate(
         stabilization,
         weighted_rows: fit.weighted_rows,
     })
-}
-
-/// Observed over expected variance of the positions; absent where nobody stated what to expect.
-fn scatter_ratio(
-    residuals: impl Iterator<Item = (f64, f64)>,
-    degrees_of_freedom: usize,
-    is_stated: bool,
-) -> Option<f64> {
-    let sum: f64 = residuals.map(|(r, v)| r * r / v).sum();
-    (is_stated && degrees_of_freedom > 0).then(|| sum / degrees_of_freedom as f64)
 }
 
 /// Number of different angles, to a millionth of a degree; up and down dwells count as angles.

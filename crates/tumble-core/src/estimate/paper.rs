@@ -1,6 +1,6 @@
 //! The paper's estimator: linear in the small unknowns, ordinary least squares. Kept as the baseline.
 
-use super::types::{ProfileIntervals, Residual, Scatter};
+use super::types::{AgainstStated, ProfileIntervals, Residual, Scatter};
 use super::{Equation, Setting, select};
 use crate::linalg::{Matrix, Triangular};
 use crate::{Position, Seat};
@@ -30,7 +30,7 @@ pub(super) struct Fit {
     pub profile: Option<ProfileIntervals>,
     pub residuals: Vec<Residual>,
     pub residual_std_lsb: Option<f64>,
-    pub variance_ratio: Option<f64>,
+    pub against_stated: Option<AgainstStated>,
     /// Equations over their standard deviation, in measured order.
     pub weighted_rows: Vec<WeightedRow>,
     /// From the unknowns of the rows to bias, misalignment, scale error.
@@ -115,7 +115,7 @@ pub(super) fn fit(eqs: &[Equation], setting: &Setting<'_>, columns: [bool; 3]) -
         profile: None,
         residuals,
         residual_std_lsb: variance.map(|s2| s2.sqrt() / k0),
-        variance_ratio: None,
+        against_stated: None,
         weighted_rows,
         to_parameters: ToParameters::Identity,
         scatter: None,

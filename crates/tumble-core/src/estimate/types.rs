@@ -137,6 +137,15 @@ pub enum Split {
     },
 }
 
+/// The positions' scatter against what the stated angle uncertainty gives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AgainstStated {
+    /// Observed over stated, as standard deviations.
+    pub ratio: f64,
+    /// Probability of a ratio that far from one, or farther on the same side, were the statement true.
+    pub p_value: f64,
+}
+
 /// Intervals of the three parameters from the profile likelihood, at one level of confidence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ProfileIntervals {
@@ -192,8 +201,8 @@ pub struct Estimate {
     pub residuals: Vec<Residual>,
     /// `√(Σr²/(n−p))`, LSB; absent without redundancy.
     pub residual_std_lsb: Option<f64>,
-    /// Observed over expected variance of the positions, where an angle uncertainty was stated and used.
-    pub variance_ratio: Option<f64>,
+    /// The positions' scatter against the stated angle uncertainty, where one was stated and used.
+    pub against_stated: Option<AgainstStated>,
     /// Condition number with unit columns; infinite where a column is missing.
     pub condition: f64,
     /// Standard uncertainties that the plan gives at zero errors with the scatter seen. Where the parameters are

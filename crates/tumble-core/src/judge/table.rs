@@ -1,7 +1,6 @@
 //! What the scatter says about the table, and the codes about the noise.
 
 use crate::estimate::{Estimate, Method};
-use crate::stats::chi_squared_p_value;
 use crate::{Finding, FindingKind, Output, Position, Quantizer};
 
 /// Significance of "the table is not as good as stated". One finding in a thousand honest runs.
@@ -44,21 +43,23 @@ pub fn table(
         ));
         return findings;
     }
-    let (Some(ratio), Some(stated)) = (estimate.variance_ratio, stated_arcmin) else {
+    let (Some(against), Some(stated)) = (estimate.against_stated, stated_arcmin) else {
         return findings;
     };
-    let dof = estimate.degrees_of_freedom as f64;
-    let upper = chi_squared_p_value(ratio * dof, dof).unwrap_or(0.5);
-    let seen = format!("positions scatter {:.2} times what {stated}′ gives", ratio.sqrt());
-    let limit = format!("1 ± {:.0} %", 100.0 * 3.3 / (2.0 * dof).sqrt());
-    if upper < SIGNIFICANCE && ratio > NOTEWORTHY_FACTOR * NOTEWORTHY_FACTOR {
+    let ratio = against.ratio;
+    let seen = format!("positions scatter {ratio:.2} times what {stated}′ gives");
+    let limit = format!("p ≥ {SIGNIFICANCE}, or a factor of {NOTEWORTHY_FACTOR}");
+    if against.p_value >= SIGNIFICANCE {
+        return findings;
+    }
+    if ratio > NOTEWORTHY_FACTOR {
         findings.push(finding(
             FindingKind::TableWorse,
             seen,
             limit,
             "your table repeats worse than stated, or something drifts: the uncertainties follow the scatter; state what the table does",
         ));
-    } else if 1.0 - upper < SIGNIFICANCE && ratio * NOTEWORTHY_FACTOR * NOTEWORTHY_FACTOR < 1.0 {
+    } else if ratio * NOTEWORTHY_FACTOR < 1.0 {
         findings.push(finding(
             FindingKind::TableBetter,
             seen,

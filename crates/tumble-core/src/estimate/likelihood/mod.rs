@@ -32,11 +32,11 @@ use profile::Profile;
 use scatter::{Beforehand, Components, Exploration, Surface};
 use spread::{Reading, Spread};
 
+use super::Setting;
 use super::equations::equations;
 use super::exact;
 use super::paper::{Fit, ToParameters, WeightedRow};
 use super::types::{EstimateError, EstimateOptions, ProfileIntervals, Residual, Weights};
-use super::{Setting, scatter_ratio};
 use crate::Position;
 use crate::linalg::dot3;
 use crate::stats::student_factor;
@@ -161,7 +161,9 @@ fn adjust(
         spread::mean_scatter(&exploration.nodes, &dwells, |n| surface.components(n.total, n.share));
     let mut sites = surface.sites().to_vec();
     let solution = integrate(&dwells, &scatter, &mut sites)?;
-    let summary = table::ScatterPoints::of(&exploration, &highest, |total, share| {
+    let is_tested = matches!(components, Components::Both(_)) && stated > 0.0;
+    let as_stated = is_tested.then(|| surface.of_angles(stated)).flatten();
+    let summary = table::ScatterPoints::of(&exploration, &highest, as_stated, |total, share| {
         surface.components(total, share)
     });
     Some(Adjusted { frame, basis, dwells, noise, exploration, solution, sites, scatter, summary })
@@ -286,12 +288,6 @@ fn present(
         })
         .collect();
     let squares: f64 = residuals.iter().map(|r| r.lsb * r.lsb).sum();
-    let stated = setting.bench.angle_uncertainty.map_or(0.0, |x| x.rad());
-    let expected = |j: usize| {
-        a.dwells[j].evidence.variance()
-            + a.frame.known_variances[j]
-            + a.frame.steepness[j] * stated * stated
-    };
     Fit {
         values: spread.values,
         covariance: Some(spread.covariance),
@@ -299,11 +295,7 @@ fn present(
         dof: spread.dof,
         profile: spread.profile.map(|ends| ProfileIntervals { level: options.level, ends }),
         residual_std_lsb: Some((squares / degrees_of_freedom as f64).sqrt()),
-        variance_ratio: scatter_ratio(
-            residuals.iter().enumerate().map(|(j, r)| (r.lsb, expected(j))),
-            degrees_of_freedom,
-            stated > 0.0 && options.weights != Weights::Equal,
-        ),
+        against_stated: a.summary.against_stated(setting, unknowns),
         residuals,
         weighted_rows,
         to_parameters: reading.to,

@@ -106,6 +106,11 @@ impl<'a> Surface<'a> {
         (total * (1.0 - share), total * share / self.mean_steepness)
     }
 
+    /// Restricted log-likelihood of angles that scatter by a given standard deviation (rad), and nothing else.
+    pub fn of_angles(&mut self, angle_rad: f64) -> Option<f64> {
+        self.at(angle_rad * angle_rad * self.mean_steepness, 1.0).map(|s| s.ln_integral)
+    }
+
     /// Solution at a point.
     pub fn at(&mut self, total: f64, share: f64) -> Option<Solution> {
         for (v, d) in self.variances.iter_mut().zip(self.dwells) {

@@ -3,8 +3,9 @@
 use super::Adjusted;
 use super::material::Materials;
 use super::scatter::{Exploration, Summit};
-use crate::estimate::types::{Ranged, Scatter, Split};
-use crate::stats::normal_quantile;
+use crate::estimate::Setting;
+use crate::estimate::types::{AgainstStated, Ranged, Scatter, Split};
+use crate::stats::{chi_squared_p_value, normal_quantile};
 
 /// Twice the log-likelihood ratio beyond which a component of scatter is needed: 5 % of the mixture of zero and χ² with
 /// one degree of freedom that the ratio has when the component is absent (at its bound).
@@ -19,6 +20,8 @@ pub(super) struct ScatterPoints {
     best: (f64, f64),
     /// Twice the logarithm of the likelihood ratio against angles alone, and against levels alone.
     against: Option<(f64, f64)>,
+    /// The same against angles that scatter as stated.
+    twice_against_stated: Option<f64>,
 }
 
 impl ScatterPoints {
@@ -26,6 +29,7 @@ impl ScatterPoints {
     pub fn of(
         exploration: &Exploration,
         highest: &Summit,
+        as_stated: Option<f64>,
         components: impl Fn(f64, f64) -> (f64, f64),
     ) -> Self {
         let top = exploration.nodes.iter().map(|n| n.ln_weight).fold(f64::NEG_INFINITY, f64::max);
@@ -44,7 +48,27 @@ impl ScatterPoints {
             }
             _ => None,
         };
-        Self { points, best: components(highest.total, highest.share), against }
+        Self {
+            points,
+            best: components(highest.total, highest.share),
+            against,
+            twice_against_stated: as_stated.map(|l| 2.0 * (highest.ln_integral - l)),
+        }
+    }
+
+    /// The total scatter at 0° against a stated angle uncertainty, by likelihood ratio (two components against none).
+    pub fn against_stated(
+        &self,
+        setting: &Setting<'_>,
+        unknowns: [f64; 3],
+    ) -> Option<AgainstStated> {
+        let stated = setting.bench.angle_uncertainty?.rad();
+        let full_scale = unknowns[1].hypot(unknowns[2]);
+        let (level, angle) = self.best;
+        Some(AgainstStated {
+            ratio: (level / (full_scale * full_scale) + angle).sqrt() / stated,
+            p_value: chi_squared_p_value(self.twice_against_stated?.max(0.0), 2.0)?,
+        })
     }
 
     /// A function of both components: its value at the maximum and the interval that holds a level of the weight.

@@ -1,11 +1,6 @@
 //! The likelihood at the ends of its range: noise from a hundredth of an LSB to thousands, single codes, saturation,
 //! averages, real numbers, from 4 to 100 000 positions.
-#![allow(clippy::unwrap_used)] // A test that cannot unwrap has failed.
 
-#[path = "likelihood/bench.rs"]
-mod bench;
-
-use bench::{Truth, equal};
 use proptest::prelude::*;
 use tumble_core::estimate::{
     Estimate, EstimateError, EstimateOptions, Method, Parameter, Split, Weights, estimate,
@@ -14,6 +9,8 @@ use tumble_core::{
     Angle, BlockSums, Code, CodeHistogram, ConverterEnds, Position, Quantizer, Readings, Seat,
     ValueMoments,
 };
+
+use crate::bench::{Truth, equal};
 
 fn try_fit(
     truth: &Truth,
