@@ -21,10 +21,12 @@ pub(super) fn provenance(page: &Page<'_>) -> Markup {
         number(scale.of(o.targets.scale_error), 3),
         scale.name,
     );
-    let weights = match o.weights.as_str() {
-        "angle" => "by the stated angle uncertainty",
-        "equal" => "equal",
-        other => other,
+    let weights = match (o.method.as_str(), o.weights.as_str()) {
+        ("likelihood", "angle") => "scatter of angles and levels, both from the data",
+        ("likelihood", "equal") => "the same scatter at all angles, from the data",
+        ("likelihood", "stated") => "the stated angle uncertainty, and what scatters beyond it",
+        (_, "angle") => "by the stated angle uncertainty",
+        (_, other) => other,
     };
     let body = html! {
         @if !p.inputs.is_empty() {

@@ -22,41 +22,40 @@ pub(super) fn section_of(page: &Page<'_>) -> Markup {
         return html! {};
     }
     let caption = format!(
-        "Value and interval ({}). σ: noise of a sample, {unit}. Total: scatter between dwells at 0°, in {unit} and in minutes of arc: \
-         the repeatability of the table. τ0: its part that is the same at all angles, {unit}. τφ: its part in the angles, ′. \
-         Split: which of the two the data ask for.",
+        "Value and interval ({}). σ: noise of a single reading, {unit}. Scatter: between dwells at 0°, in {unit} and in minutes of \
+         arc; the latter is how well the table repeats. Made of: τ0, the same at all angles, and τφ, in the angles, \
+         where the data tell them apart.",
         crate::summary::level(page.passport),
         unit = page.units.reading
     );
-    let columns = [
-        text("Run"),
-        numbers("σ"),
-        numbers("Total"),
-        numbers("Total, ′"),
-        numbers("τ0"),
-        numbers("τφ, ′"),
-        text("Split"),
-    ];
+    let columns =
+        [text("Run"), numbers("σ"), numbers("Scatter"), numbers("Scatter, ′"), text("Made of")];
     section("Noise and scatter", &table("", &caption, &columns, &rows))
 }
 
 fn row(run: &Run, s: &Scatter) -> Vec<String> {
-    let shown = |r: &Ranged| {
-        let [low, high] = r.interval;
-        format!("{} ({})", number(r.value, 2), typographic(&interval(low, high)))
-    };
     let noise = if s.noise_is_bound {
         format!("< {}", number(s.noise_lsb.interval[1], 2))
     } else {
         shown(&s.noise_lsb)
     };
-    vec![
-        shortened(&run.name, 20),
-        noise,
-        shown(&s.total_lsb),
-        shown(&s.total_arcmin),
-        shown(&s.level_lsb),
-        shown(&s.angle_arcmin),
-        s.split.replace('_', " "),
-    ]
+    vec![shortened(&run.name, 20), noise, shown(&s.total_lsb), shown(&s.total_arcmin), made_of(s)]
+}
+
+fn shown(r: &Ranged) -> String {
+    let [low, high] = r.interval;
+    format!("{} ({})", number(r.value, 2), typographic(&interval(low, high)))
+}
+
+/// What the scatter is made of, as far as the data say.
+fn made_of(s: &Scatter) -> String {
+    let level = || format!("τ0 {}", shown(&s.level_lsb));
+    let angle = || format!("τφ {}′", shown(&s.angle_arcmin));
+    match s.split.as_str() {
+        "level" => format!("levels: {}", level()),
+        "angle" => format!("angles: {}", angle()),
+        "both" => format!("{}, {}", level(), angle()),
+        "undetermined" => "not determined: either would do".into(),
+        _ => "not asked".into(),
+    }
 }
