@@ -331,3 +331,19 @@ fn errors_that_repeat_in_every_run_are_in_the_uncertainty() {
     assert!(bias.standard_uncertainty > 0.8 * own, "{} against {own}", bias.standard_uncertainty);
     assert!((bias.value - base.bias_m_s2).abs() < bias.expanded_uncertainty);
 }
+
+/// Noise that wanders within dwells: the mean is worse than white noise would make it, and the report says so.
+#[test]
+fn slow_noise_within_dwells_is_named_and_white_noise_is_not() {
+    let white = Truth { runs: 1, ..Preset::Paper3.truth() };
+    let slow = Truth { random_walk_m_s2_rts: 0.1 * white.noise_m_s2, ..white.clone() };
+    let inflation = |truth: &Truth| {
+        let a = assess(&experiment(truth), &EstimateOptions::default()).unwrap();
+        let named = a.findings.iter().any(|f| f.kind == FindingKind::SlowNoise);
+        (a.runs[0].estimate.as_ref().unwrap().scatter.unwrap().inflation, named)
+    };
+    let (factor, named) = inflation(&slow);
+    assert!(factor > 1.5 && named, "{factor}");
+    let (factor, named) = inflation(&white);
+    assert!(factor < 1.2 && !named, "{factor}");
+}

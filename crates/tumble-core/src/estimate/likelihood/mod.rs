@@ -11,11 +11,13 @@
 
 mod basis;
 mod cells;
+mod curve;
 mod evidence;
 mod frame;
 mod integrate;
 mod material;
 mod noise;
+mod piece;
 mod profile;
 mod scatter;
 mod search;
