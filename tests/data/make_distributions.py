@@ -1,10 +1,10 @@
-"""Writes distributions.csv: values of normal, Student and F distributions by mpmath (40 digits).
+"""Writes distributions.csv: values of normal (and its tails), Student and F distributions by mpmath (40 digits).
 
 Run with mpmath installed: python make_distributions.py > distributions.csv
 """
-from mpmath import mp, mpf, erfc, sqrt, betainc, erfinv, findroot
+from mpmath import mp, mpf, erfc, exp, log, sqrt, betainc, erfinv
 
-mp.dps = 40
+mp.dps = 60
 
 
 def normal_cdf(z):
@@ -44,3 +44,10 @@ for nu in ["1", "2", "3", "4", "9.5", "17", "50", "57", "117", "1000", "100000",
 for a, b in [("1", "57"), ("2", "55"), ("3", "4"), ("10", "290")]:
     for f in ["0.2", "1", "4", "12"]:
         row("fisher_p_value", mpf(f), mpf(a), mpf(b), fisher(mpf(float(f)), mpf(a), mpf(b)))
+for x in ["0", "0.1", "0.46875", "0.47", "1", "2.5", "4", "4.1", "12", "40", "1000"]:
+    row("erfcx", mpf(x), mpf(0), mpf(0), exp(mpf(float(x)) ** 2) * erfc(mpf(float(x))))
+# ln(Φ(b) − Φ(a)): the tails, where the difference of two cdfs has no digits left, and narrow intervals.
+for a, b in [("-1", "1"), ("0.5", "0.75"), ("-0.001", "0.002"), ("-8", "-7.5"), ("6", "9"), ("35", "36"), ("-60", "-59"), ("-3", "40")]:
+    a, b = mpf(float(a)), mpf(float(b))
+    p = (erfc(a / sqrt(2)) - erfc(b / sqrt(2))) / 2 if a > 0 else (erfc(-b / sqrt(2)) - erfc(-a / sqrt(2))) / 2
+    row("ln_normal_interval", mpf(0), a, b, log(p))
