@@ -51,6 +51,7 @@ impl TermTest {
 pub fn test_term(runs: &[&[WeightedRow]], columns: &[Vec<f64>]) -> Option<TermTest> {
     let (mut zz, mut zr, mut rr, mut own) = (0.0, 0.0, 0.0, 0.0);
     let mut dof = -1.0;
+    let mut bounds = 0.0;
     let mut freed: Vec<f64> = Vec::new();
     for (rows, column) in runs.iter().zip(columns) {
         let mut triangle = Triangular::new(3);
@@ -61,7 +62,8 @@ pub fn test_term(runs: &[&[WeightedRow]], columns: &[Vec<f64>]) -> Option<TermTe
             let z = weighted(j) - row.row.iter().zip(&b).map(|(x, v)| x * v).sum::<f64>();
             zz += z * z;
             zr += z * row.residual;
-            rr += row.residual * row.residual;
+            bounds += f64::from(u8::from(row.is_bound));
+            rr += if row.is_bound { 0.0 } else { row.residual * row.residual };
             own += weighted(j) * weighted(j);
             freed.push(z * row.sd_lsb);
         }
@@ -71,7 +73,13 @@ pub fn test_term(runs: &[&[WeightedRow]], columns: &[Vec<f64>]) -> Option<TermTe
         return None;
     }
     let effect_lsb = zr / zz;
-    let variance = ((rr - zr * zr / zz).max(0.0) / dof) / zz;
+    // Rows are over their standard deviations: where some only bound their level, that is what they scatter by.
+    let scale = if bounds > 0.0 {
+        1.0f64.max((rr - zr * zr / zz) / (dof - bounds).max(1.0))
+    } else {
+        (rr - zr * zr / zz).max(0.0) / dof
+    };
+    let variance = scale / zz;
     let standard_uncertainty_lsb = variance.sqrt();
     let p_value = student_p_value(effect_lsb / standard_uncertainty_lsb, dof)?;
     let peak_lsb = freed.iter().map(|z| (effect_lsb * z).abs()).fold(0.0, f64::max);

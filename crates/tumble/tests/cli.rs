@@ -18,7 +18,10 @@ fn with_input(folder: &Path, args: &[&str], input: &str) -> Output {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    child.stdin.take().unwrap().write_all(input.as_bytes()).unwrap();
+    // A refusal need not wait for its input.
+    if let Err(e) = child.stdin.take().unwrap().write_all(input.as_bytes()) {
+        assert_eq!(e.kind(), std::io::ErrorKind::BrokenPipe, "{e}");
+    }
     child.wait_with_output().unwrap()
 }
 
@@ -244,6 +247,15 @@ fn methods_and_weights_that_do_not_go_together_are_refused() {
     }
     let stated = tumble(dir.path(), &["certify", "demo", "--weights", "stated", "--json"]);
     assert!(out(&stated).contains("\"weights\": \"stated\""), "{}", out(&stated));
+    // What is not stated cannot be taken as known.
+    let file = dir.path().join("demo/experiment.toml");
+    let toml = std::fs::read_to_string(&file).unwrap();
+    let silent: Vec<&str> =
+        toml.lines().filter(|l| !l.starts_with("angle_uncertainty_arcmin")).collect();
+    std::fs::write(&file, silent.join("\n")).unwrap();
+    let o = tumble(dir.path(), &["certify", "demo", "--weights", "stated"]);
+    assert_eq!(code(&o), 2);
+    assert!(err(&o).contains("angle_uncertainty_arcmin"), "{}", err(&o));
 }
 
 /// The bench has a converter that ends at ±500 codes: the default method uses those dwells, the others leave them out.

@@ -14,7 +14,9 @@ pub use repeat::repeated_share;
 pub use result::{BudgetLine, CompensationResult, compensation_result};
 pub use verdict::{Verdict, may_carry_result, verdict};
 
-use crate::estimate::{Estimate, EstimateOptions, Residual, Setting, Weights, estimate};
+use crate::estimate::{
+    Estimate, EstimateOptions, Residual, Setting, Weights, determines_all, estimate,
+};
 use crate::judge::{self, Structure};
 use crate::nominal::{NominalScale, NominalScaleError, nominal_scale};
 use crate::{
@@ -77,12 +79,18 @@ impl RunAssessment {
 pub enum AssessError {
     /// Without `k0` there is no scale error.
     NominalScale(NominalScaleError),
+    /// [`Weights::Stated`] without a stated angle uncertainty.
+    NothingStated,
 }
 
 impl std::fmt::Display for AssessError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::NominalScale(e) => e.fmt(f),
+            Self::NothingStated => f.write_str(
+                "--weights stated takes the angle uncertainty as known, and none is stated: give \
+                 angle_uncertainty_arcmin in [bench], or leave --weights out",
+            ),
         }
     }
 }
@@ -99,6 +107,9 @@ pub fn assess(
     experiment: &Experiment,
     options: &EstimateOptions,
 ) -> Result<Assessment, AssessError> {
+    if options.weights == Weights::Stated && experiment.bench.angle_uncertainty.is_none() {
+        return Err(AssessError::NothingStated);
+    }
     let (k0, mut findings) = nominal_scale(experiment).map_err(AssessError::NominalScale)?;
     let gravity = &experiment.bench.gravity;
     findings.extend(gravity_findings(experiment));
@@ -206,8 +217,16 @@ fn assess_run(
         }
         _ => candidates,
     };
+    // Bounds refine what the other dwells determine; alone they are no start.
+    let whole: Vec<&Position> = candidates
+        .iter()
+        .copied()
+        .filter(|p| p.readings.censored(&experiment.output.ends) == 0)
+        .collect();
     let censored = match options.method {
-        crate::estimate::Method::Likelihood => judge::Censored::Kept,
+        crate::estimate::Method::Likelihood if determines_all(&whole, setting) => {
+            judge::Censored::Kept
+        }
         _ => judge::Censored::LeftOut,
     };
     let usable = judge::usable_positions(run, candidates, &experiment.output, bench, k0, censored);

@@ -91,6 +91,7 @@ pub(super) fn fit(
             y: *y,
             sd_lsb: total_variance(e, unknowns, scatter).sqrt(),
             residual: y - dot(row, unknowns),
+            is_bound: false,
         })
         .collect();
     let residual_std_lsb = redundant.then(|| {

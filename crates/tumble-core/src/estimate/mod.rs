@@ -94,6 +94,12 @@ pub fn estimate(
     })
 }
 
+/// Whether positions determine all three parameters at all, however badly.
+#[must_use]
+pub fn determines_all(positions: &[&Position], setting: &Setting<'_>) -> bool {
+    Identifiability::of(positions, setting).full_rank()
+}
+
 /// Number of different angles, to a millionth of a degree; up and down dwells count as angles.
 fn distinct_angles(positions: &[&Position]) -> usize {
     let mut angles: Vec<f64> = positions.iter().map(|p| p.angle.deg()).collect();

@@ -16,6 +16,9 @@ pub struct WeightedRow {
     pub sd_lsb: f64,
     /// What is left over, over the standard deviation.
     pub residual: f64,
+    /// Whether the dwell's codes only bound its level: such a residual is zero inside of the bounds, and says nothing
+    /// about how much positions scatter.
+    pub is_bound: bool,
 }
 
 /// A fitted run, before it is judged.
@@ -105,6 +108,7 @@ pub(super) fn fit(eqs: &[Equation], setting: &Setting<'_>, columns: [bool; 3]) -
             y: y / sd,
             sd_lsb: sd / k0,
             residual: r.lsb * k0 / sd,
+            is_bound: false,
         })
         .collect();
     Fit {

@@ -24,8 +24,6 @@ pub struct Usable<'a> {
 }
 
 /// Chooses the dwells that an estimator can use, and looks for a converter that sticks.
-///
-/// Dwells at the converter's ends are kept only where three and more others carry the solution.
 #[must_use]
 pub fn usable_positions<'a>(
     run: &Run,
@@ -40,7 +38,7 @@ pub fn usable_positions<'a>(
     let all = candidates.clone();
     let (mut positions, censored): (Vec<_>, Vec<_>) =
         candidates.into_iter().partition(|p| p.readings.censored(&output.ends) == 0);
-    let kept = handling == Censored::Kept && positions.len() > 3;
+    let kept = handling == Censored::Kept;
     let ends = format!(
         "codes strictly inside {} … {}",
         end_text(output.ends.min_code),
@@ -124,11 +122,12 @@ fn stuck(run: &Run, positions: &[&Position], full_scale_lsb: f64) -> Option<Find
     })
 }
 
-/// Runs whose readings are equal to the last digit.
+/// Runs whose readings are equal to the last digit. A quiet converter on a good table repeats its codes honestly: only
+/// noise never repeats, so a copy must hold some.
 #[must_use]
 pub fn identical_runs(runs: &[Run]) -> Vec<Finding> {
     let same = |a: &Run, b: &Run| {
-        !a.positions.is_empty()
+        a.positions.iter().any(|p| p.readings.only_code().is_none())
             && a.positions.len() == b.positions.len()
             && a.positions
                 .iter()

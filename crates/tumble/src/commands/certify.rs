@@ -15,11 +15,12 @@ use crate::exit::{Exit, complain};
 use crate::interrupt;
 
 pub(crate) fn run(args: &CertifyArgs) -> Exit {
-    let Some(options) = options(args) else {
-        complain(
-            "--method paper is unweighted by definition, and --weights stated is for --method likelihood; leave --weights out",
-        );
-        return Exit::Usage;
+    let options = match options(args) {
+        Ok(options) => options,
+        Err(why) => {
+            complain(why);
+            return Exit::Usage;
+        }
     };
     let several = args.folders.len() > 1;
     let mut taken = BTreeSet::new();
@@ -71,20 +72,28 @@ fn is_failure(problem: &Problem) -> bool {
     }
 }
 
-fn options(args: &CertifyArgs) -> Option<CertifyOptions> {
+fn options(args: &CertifyArgs) -> Result<CertifyOptions, &'static str> {
     let method = match args.method {
         MethodArg::Paper => Method::Paper,
         MethodArg::Exact => Method::Exact,
         MethodArg::Likelihood => Method::Likelihood,
     };
     let weights = match (args.method, args.weights) {
-        (MethodArg::Paper, Some(WeightsArg::Angle | WeightsArg::Stated))
-        | (MethodArg::Exact, Some(WeightsArg::Stated)) => return None,
+        (MethodArg::Paper, Some(WeightsArg::Angle | WeightsArg::Stated)) => {
+            return Err(
+                "--method paper is unweighted by definition; leave --weights out, or use another method",
+            );
+        }
+        (MethodArg::Exact, Some(WeightsArg::Stated)) => {
+            return Err(
+                "--weights stated is for --method likelihood; --method exact takes angle or equal",
+            );
+        }
         (MethodArg::Paper, _) | (_, Some(WeightsArg::Equal)) => Weights::Equal,
         (_, Some(WeightsArg::Stated)) => Weights::Stated,
         (_, Some(WeightsArg::Angle) | None) => Weights::Angle,
     };
-    Some(CertifyOptions {
+    Ok(CertifyOptions {
         estimate: EstimateOptions { method, weights, level: args.level },
         id: args.id.clone(),
         issued: args.issued.clone(),

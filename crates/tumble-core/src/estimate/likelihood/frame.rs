@@ -12,11 +12,16 @@ pub(super) struct Frame {
     pub rows: Vec<[f64; 3]>,
     /// Levels at the reference, upright ones with what leaning costs on average.
     pub origins: Vec<f64>,
-    /// `(∂m/∂φ)²`, LSB² per rad²; zero upright.
+    /// `(∂m/∂φ)²`, LSB² per rad²; zero upright, on the table at least [`LEAST_STEEPNESS`].
     pub steepness: Vec<f64>,
     /// Variance that is not estimated: lean of upright dwells `R² u(δ)⁴/2`, and a stated angle uncertainty.
     pub known_variances: Vec<f64>,
 }
+
+/// Steepness, over `R = g/k*`, below which an angle error counts no less: `cos 70°`. Toward the vertical the scatter of
+/// the angles vanishes only on paper; tilt of the axis and lean of the sensor do not, and dwells there must not outweigh
+/// all others by belief alone.
+const LEAST_STEEPNESS: f64 = 0.342;
 
 impl Frame {
     /// About a reference; `angle_rad` is a standard deviation of the angles that is taken as known.
@@ -41,7 +46,8 @@ impl Frame {
             let (row, steepness, known, lean) = match p.seat.vertical_sign() {
                 None => {
                     let (sin, cos) = p.angle.rad().sin_cos();
-                    let steepness = (beta * cos - gamma * sin).powi(2);
+                    let steepness =
+                        (beta * cos - gamma * sin).powi(2).max((LEAST_STEEPNESS * r).powi(2));
                     ([1.0, sin, cos], steepness, steepness * angle_rad * angle_rad, 0.0)
                 }
                 Some(sign) => (

@@ -66,29 +66,64 @@ impl Materials {
         let plain: Vec<Plain> = positions.iter().map(|p| plain(&p.readings, setting)).collect();
         let inflation = inflation(positions);
         let quantized = setting.quantizer != Quantizer::None;
-        let pooled = pooled_variance(&plain, true).or_else(|| pooled_variance(&plain, false));
+        let clear = pooled_variance(&plain, true);
+        let pooled = clear.or_else(|| pooled_variance(&plain, false));
         let (code_variance, noise_dof) = pooled.unwrap_or((0.0, 0.0));
         let sheppard = if quantized { 1.0 / 12.0 } else { 0.0 };
         let sigma = (code_variance - sheppard).max(0.0).sqrt();
-        let dithered = !quantized || sigma >= DITHERED_LSB || pooled.is_none();
+        let loud = !quantized || sigma >= DITHERED_LSB;
+        // One sample a dwell, or averages alone: nothing tells noise from scatter, so all of it is scatter.
+        let silent = quantized && pooled.is_none();
         let dwells: Vec<Material> = positions
             .iter()
             .zip(&plain)
-            .map(|(p, own)| {
-                if dithered && (own.clear || matches!(p.readings, Readings::Averaged { .. })) {
-                    return mean_material(own, code_variance, sigma, inflation, setting.quantizer);
+            .map(|(p, own)| match &p.readings {
+                Readings::Codes { histogram, .. } if !(loud && own.clear) => {
+                    Material::Codes(Cells::of(histogram, setting.quantizer, &setting.ends))
                 }
-                match &p.readings {
-                    Readings::Codes { histogram, .. } => {
-                        Material::Codes(Cells::of(histogram, setting.quantizer, &setting.ends))
-                    }
-                    _ => Material::Codes(rebuilt_cells(own, setting)),
+                Readings::Averaged { .. } if quantized && !loud && own.is_of_few_codes(silent) => {
+                    Material::Codes(rebuilt_cells(own, setting))
                 }
+                _ => mean_material(
+                    own,
+                    own.code_variance(code_variance),
+                    sigma,
+                    inflation,
+                    setting.quantizer,
+                ),
             })
             .collect();
-        // Quiet codes: the variance over all phases is σ/√π for small σ.
-        let sigma_start = if dithered { sigma } else { quiet_sigma(code_variance) };
-        Self { dwells, sigma_start, sigma_is_known: dithered, noise_dof, inflation }
+        let any_codes = dwells.iter().any(|d| matches!(d, Material::Codes(_)));
+        // Where no dwell is clear of code zero and of the ends, their variance is no measure of the noise.
+        let sigma_is_known = silent || !any_codes || (loud && clear.is_some());
+        let sigma_start = match (silent, loud) {
+            (true, _) => SMALLEST_SIGMA,
+            (_, true) => sigma,
+            _ => quiet_sigma(code_variance),
+        };
+        Self { dwells, sigma_start, sigma_is_known, noise_dof, inflation }
+    }
+}
+
+/// Standard errors by which a dwell's own variance must differ from the pooled one to be believed.
+const OWN_VARIANCE_FROM: f64 = 4.0;
+
+impl Plain {
+    /// Variance of this dwell's samples: the pooled one, unless the dwell is clearly louder or quieter.
+    fn code_variance(&self, pooled: f64) -> f64 {
+        match self.variance {
+            Some(own) if own > 0.0 && pooled > 0.0 => {
+                let error = (2.0 / (self.samples - 1.0)).sqrt();
+                if (own / pooled).ln().abs() > OWN_VARIANCE_FROM * error { own } else { pooled }
+            }
+            _ => pooled,
+        }
+    }
+
+    /// Whether an average is taken apart into its codes. Where nothing is known of the noise, only a whole number is:
+    /// one code, or as good as one.
+    fn is_of_few_codes(&self, silent: bool) -> bool {
+        !silent || (self.mean - self.mean.round()).abs() < 1e-9
     }
 }
 

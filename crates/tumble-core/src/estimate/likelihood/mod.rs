@@ -286,6 +286,7 @@ fn present(
                 y: y / sd_lsb,
                 sd_lsb,
                 residual: (offset - dot3(row, shift)) / sd_lsb,
+                is_bound: matches!(a.dwells[j].evidence, Evidence::Curve(_)),
             }
         })
         .collect();

@@ -10,8 +10,8 @@ use super::material::{Material, Materials, SMALLEST_SIGMA};
 use super::scatter::Surface;
 use super::search::crossing;
 
-/// Loudest noise for which codes are kept apart, LSB; beyond, averages say the same.
-const LARGEST_SIGMA: f64 = 3.0;
+/// Loudest noise that is looked for, LSB: more than any converter has codes.
+const LARGEST_SIGMA: f64 = 1e6;
 /// Noise from which the scatter between dwells has no part in it, LSB: every dwell shows three codes and more.
 const OWN_NOISE_LSB: f64 = 0.3;
 /// Log-likelihood that the last step of a search may still be worth.

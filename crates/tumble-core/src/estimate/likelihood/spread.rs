@@ -6,6 +6,7 @@ use super::integrate::{Dwell, Site, Solution};
 use super::scatter::Node;
 use crate::estimate::paper::ToParameters;
 use crate::linalg::{Matrix, Symmetric3, dot3};
+use crate::stats::{normal_cdf, student_factor};
 
 /// Degrees of freedom from which the residuals themselves say how large each parameter's variance is. With fewer, the
 /// model of the scatter says it: three residuals that matter say little.
@@ -58,49 +59,131 @@ impl Reading<'_> {
 
 /// Mean of the parameters over the surface, with the spread that comes from not knowing the scatter.
 ///
-/// **Model** at each node the parameter is Gaussian with variance `U`; over the nodes `1/U` is taken as a gamma variable,
-/// which makes the parameter Student's: scale `1/E[1/U]`, degrees of freedom `2 E[1/U]²/Var[1/U]`. With one component of
-/// scatter that dominates this is exact: `t(n − p)`. The variance of the means over the nodes is added.
+/// **Model** at each node the parameter is Gaussian; over the nodes it is a mixture. Student's distribution that has the
+/// mixture's central 68 and 95 % stands for it. With one component of scatter that dominates this is exact: `t(n − p)`.
 pub(super) fn over_surface(nodes: &[Node], reading: &Reading<'_>) -> Spread {
     let top = nodes.iter().map(|n| n.ln_weight).fold(f64::NEG_INFINITY, f64::max);
-    let at = reading.to.at(reading.reference).0;
     let mut sum = 0.0;
-    let (mut first, mut second) = ([0.0; 3], [0.0; 3]);
-    let (mut precision, mut square) = ([0.0; 3], [0.0; 3]);
+    let mut mean = [0.0; 3];
     let mut mean_covariance = Matrix::zeros(3, 3);
+    let at = reading.to.at(reading.reference).0;
+    let mut parts: [Vec<Part>; 3] = Default::default();
     for node in nodes {
-        let w = (node.ln_weight - top).exp();
+        let weight = (node.ln_weight - top).exp();
         // A node that weighs nothing costs nothing.
-        if w < 1e-9 {
+        if weight < 1e-9 {
             continue;
         }
         let (values, c) = reading.of(&node.solution);
-        sum += w;
+        sum += weight;
         for i in 0..3 {
             let off = values[i] - at[i];
-            first[i] += w * off;
-            second[i] += w * off * off;
-            precision[i] += w / c[(i, i)];
-            square[i] += w / (c[(i, i)] * c[(i, i)]);
+            mean[i] += weight * off;
+            parts[i].push(Part { weight, off, sd: c[(i, i)].sqrt() });
             for j in 0..3 {
-                mean_covariance[(i, j)] += w * c[(i, j)];
+                mean_covariance[(i, j)] += weight * c[(i, j)];
             }
         }
     }
     let mut u = [0.0; 3];
     let mut dof = [0.0; 3];
     for i in 0..3 {
-        let between = (second[i] / sum - (first[i] / sum).powi(2)).max(0.0);
-        let mean = precision[i] / sum;
-        u[i] = (1.0 / mean + between).sqrt();
-        dof[i] = 2.0 / (square[i] / sum / (mean * mean) - 1.0).max(1e-9);
+        mean[i] /= sum;
+        parts[i].iter_mut().for_each(|p| p.off -= mean[i]);
+        (u[i], dof[i]) = student_of(&parts[i], sum);
     }
     Spread {
-        values: core::array::from_fn(|i| at[i] + first[i] / sum),
+        values: core::array::from_fn(|i| at[i] + mean[i]),
         covariance: with_deviations(&mean_covariance, u),
         dof,
         profile: None,
     }
+}
+
+/// One Gaussian of a mixture.
+struct Part {
+    weight: f64,
+    off: f64,
+    sd: f64,
+}
+
+/// Scale and degrees of freedom of the Student distribution that has the central 68 and 95 % of a mixture.
+fn student_of(parts: &[Part], sum: f64) -> (f64, f64) {
+    let inner = half_width(parts, sum, 0.68);
+    let outer = half_width(parts, sum, 0.95);
+    let dof = dof_of_ratio(outer / inner);
+    let factor = student_factor(0.95, dof).unwrap_or(1.96);
+    (outer / factor, dof)
+}
+
+/// Half the width of the central interval that holds a level of a mixture, by Newton steps held in a bracket.
+fn half_width(parts: &[Part], sum: f64, level: f64) -> f64 {
+    let (mut low, mut high) = (0.0, f64::INFINITY);
+    let mut h = parts.iter().map(|p| p.weight * (p.sd + p.off.abs())).sum::<f64>() / sum;
+    for _ in 0..100 {
+        let (mut inside, mut density) = (0.0, 0.0);
+        for p in parts {
+            let (a, b) = ((h - p.off) / p.sd, (h + p.off) / p.sd);
+            inside += p.weight * (normal_cdf(a) + normal_cdf(b) - 1.0);
+            density += p.weight * ((-0.5 * a * a).exp() + (-0.5 * b * b).exp()) / p.sd;
+        }
+        let excess = inside / sum - level;
+        if excess > 0.0 {
+            high = h;
+        } else {
+            low = h;
+        }
+        let newton = h - excess * sum * (2.0 * core::f64::consts::PI).sqrt() / density;
+        let next = match (newton > low && newton < high, high.is_finite()) {
+            (true, _) => newton,
+            (_, true) => 0.5 * (low + high),
+            _ => 2.0 * h,
+        };
+        if (next - h).abs() < 1e-6 * h {
+            return next;
+        }
+        h = next;
+    }
+    h
+}
+
+/// Degrees of freedom for a ratio of the two-sided 95 and 68 % factors: interpolated in `1/ν` (scipy's quantiles).
+fn dof_of_ratio(ratio: f64) -> f64 {
+    const NORMAL: f64 = 1.970886870;
+    const TABLE: [(f64, f64); 20] = [
+        (0.4, 103.9366748),
+        (0.6, 22.5009997),
+        (0.8, 10.7027655),
+        (1.0, 6.9852952),
+        (1.25, 5.0590468),
+        (1.6, 3.8938011),
+        (2.0, 3.2805149),
+        (2.5, 2.8927811),
+        (3.0, 2.6767345),
+        (4.0, 2.4475082),
+        (5.0, 2.3291254),
+        (6.0, 2.2573494),
+        (8.0, 2.1750160),
+        (10.0, 2.1292916),
+        (14.0, 2.0801902),
+        (20.0, 2.0454561),
+        (30.0, 2.0196209),
+        (50.0, 1.9996681),
+        (100.0, 1.9851084),
+        (300.0, 1.9755903),
+    ];
+    if ratio <= TABLE[19].1 {
+        // 300 and more: the excess over the normal ratio falls like 1/ν.
+        let excess = (ratio - NORMAL) / (TABLE[19].1 - NORMAL);
+        return (300.0 / excess.max(1e-6)).min(1e8);
+    }
+    if ratio >= TABLE[0].1 {
+        return TABLE[0].0;
+    }
+    let k = TABLE.iter().position(|(_, r)| *r <= ratio).unwrap_or(19).max(1);
+    let ((n0, r0), (n1, r1)) = (TABLE[k - 1], TABLE[k]);
+    let share = (r0.ln() - ratio.ln()) / (r0.ln() - r1.ln());
+    (1.0 / n0 + share * (1.0 / n1 - 1.0 / n0)).recip()
 }
 
 /// A covariance with the correlations of one matrix and given standard deviations.
@@ -214,4 +297,39 @@ pub(super) fn from_residuals(
         }
     }
     Some((u, dof))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mixture_over_gamma_precisions_is_students() {
+        for dof in [3.0, 9.0, 22.0, 57.0] {
+            // 1/U = χ²(ν)/ν on a fine grid of ln U.
+            let parts: Vec<Part> = (-400..400)
+                .map(|k| {
+                    let ln = f64::from(k) * 0.02;
+                    let precision = (-ln).exp();
+                    let weight = (0.5 * dof * (-ln) - 0.5 * dof * precision).exp();
+                    Part { weight, off: 0.0, sd: (0.5 * ln).exp() }
+                })
+                .collect();
+            let sum = parts.iter().map(|p| p.weight).sum();
+            let (u, nu) = student_of(&parts, sum);
+            assert!((nu / dof - 1.0).abs() < 0.01, "{dof}: {nu}");
+            assert!((u - 1.0).abs() < 0.001, "{dof}: {u}");
+        }
+    }
+
+    #[test]
+    fn two_very_different_variances_make_a_heavy_tail() {
+        let parts =
+            [Part { weight: 0.5, off: 0.0, sd: 1.0 }, Part { weight: 0.5, off: 0.0, sd: 10.0 }];
+        let (u, dof) = student_of(&parts, 1.0);
+        let outer = u * student_factor(0.95, dof).unwrap();
+        // Half of the tail beyond 16.4 belongs to the wide one: P(|z| > 1.645) = 10 %.
+        assert!((outer - 16.4).abs() < 0.1, "{outer}");
+        assert!(dof < 2.0, "{dof}");
+    }
 }
