@@ -68,14 +68,14 @@ pub fn unquantized_errors(truth: &Truth, analogue_lsb: &[f64]) -> [f64; 3] {
     to_parameters(truth, [b[0], b[1], b[2]])
 }
 
-/// First order about the truth with misalignment zero: `Δa = k* α`, `Δφ = γ/R`, `δk = −(1 + δk) β/R`.
+/// First order about the truth: `Δa = k* α`, `R = √(β²+γ²)`, `Δφ = atan2(γ, β)`, `k* = g/R`.
 fn to_parameters(truth: &Truth, shift: [f64; 3]) -> [f64; 3] {
-    assert!(truth.misalignment_rad == 0.0, "the bounds here are for a straight mounting");
     let (k, r) = (truth.scale(), truth.full_scale());
-    let relative = shift[1] / r;
+    let (sin, cos) = truth.misalignment_rad.sin_cos();
+    let relative = (cos * shift[1] + sin * shift[2]) / r;
     [
         k * (shift[0] - truth.bias_lsb * relative),
-        shift[2] / r,
+        (cos * shift[2] - sin * shift[1]) / r,
         -(1.0 + truth.scale_error) * relative,
     ]
 }

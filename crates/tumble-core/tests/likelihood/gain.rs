@@ -8,17 +8,16 @@ use crate::bound::{cramer_rao, unquantized_errors};
 use crate::study::{each, errors, fit, in_print, long, names, paired_ratio, rms, runs};
 
 /// Errors of averaging, likelihood and the unquantized reference in one run, and the bound.
-fn one(base: &Truth, seed: u64) -> [[f64; 3]; 4] {
-    let truth = base.dithered(seed);
+fn one(truth: &Truth, seed: u64) -> [[f64; 3]; 4] {
     let run = truth.run(seed + 1);
-    let of = |method, weights| errors(&truth, &fit(&truth, &run.positions, method, weights, 0.95));
+    let of = |method, weights| errors(truth, &fit(truth, &run.positions, method, weights, 0.95));
     [
         of(Method::Exact, Weights::Equal),
         of(Method::Likelihood, Weights::Angle),
-        unquantized_errors(&truth, &run.analogue_lsb),
-        cramer_rao(&truth),
+        unquantized_errors(truth, &run.analogue_lsb),
+        cramer_rao(truth),
     ]
-    .map(|e| in_print(&truth, e))
+    .map(|e| in_print(truth, e))
 }
 
 fn column(all: &[[[f64; 3]; 4]], i: usize) -> Vec<[f64; 3]> {
@@ -38,7 +37,7 @@ fn the_table_of_the_method() {
         (1.0, 0.3, true),
     ] {
         let base = Truth { sigma, level, samples: 300, ..Truth::new(equal(60.0, 60)) };
-        let all = each(n, |seed| one(&base, seed));
+        let all = each(n, |seed| one(&base.dithered(seed).turned(seed), seed));
         let [averaging, likelihood, unquantized, bound] =
             [0, 1, 2, 3].map(|i| rms(&column(&all, i))[0]);
         let (ratio, se) = paired_ratio(&column(&all, 1), &column(&all, 3), 0);
@@ -85,7 +84,10 @@ fn nowhere_worse_than_averaging() {
                             quantizer,
                             ..Truth::new(around_zero(range, positions))
                         };
-                        let all = each(n, |seed| one(&base, seed + 1000 * cell));
+                        let all = each(n, |seed| {
+                            let seed = seed + 1000 * cell;
+                            one(&base.dithered(seed), seed)
+                        });
                         let (ours, theirs) = (column(&all, 1), column(&all, 0));
                         let ratios: [(f64, f64); 3] =
                             core::array::from_fn(|i| paired_ratio(&ours, &theirs, i));
