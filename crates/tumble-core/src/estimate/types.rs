@@ -270,6 +270,8 @@ pub enum EstimateError {
         /// Relative change in the last one.
         last_change: f64,
     },
+    /// The codes bound the parameters and do not determine them: dwells at the converter's ends, or far too few codes.
+    OnlyBounds,
 }
 
 impl std::fmt::Display for EstimateError {
@@ -278,6 +280,9 @@ impl std::fmt::Display for EstimateError {
             Self::NotConverged { iterations, last_change } => write!(
                 f,
                 "the adjustment still changed by {last_change:.1e} after {iterations} iterations"
+            ),
+            Self::OnlyBounds => f.write_str(
+                "the codes bound the parameters but do not determine them, or do not belong to these angles",
             ),
         }
     }

@@ -66,6 +66,32 @@ struct Adjusted {
     summary: table::ScatterPoints,
 }
 
+impl Adjusted {
+    /// What a dwell's Gaussian is off the solution, over its standard deviation.
+    fn standardized(&self, j: usize) -> Option<f64> {
+        let site = self.sites[j];
+        let off = site.pull - site.precision * dot3(self.basis.rows[j], self.solution.shift);
+        (site.precision > 0.0).then(|| off / site.precision.sqrt())
+    }
+
+    /// A dwell's Gaussian as an equation of least squares.
+    fn weighted_row(&self, j: usize, shift: [f64; 3]) -> WeightedRow {
+        let site = self.sites[j];
+        // A dwell that says nothing has no equation: an infinite deviation, held finite.
+        let precision = site.precision.max(1e-12);
+        let sd_lsb = precision.sqrt().recip();
+        let row = self.frame.rows[j];
+        let offset = site.pull / precision;
+        WeightedRow {
+            row: row.map(|x| x / sd_lsb),
+            y: (dot3(row, self.frame.reference) + offset) / sd_lsb,
+            sd_lsb,
+            residual: (offset - dot3(row, shift)) / sd_lsb,
+            is_bound: matches!(self.dwells[j].evidence, Evidence::Curve(_)),
+        }
+    }
+}
+
 /// Fits one run whose positions determine all three parameters, with redundancy.
 pub(super) fn fit(
     positions: &[&Position],
@@ -76,13 +102,12 @@ pub(super) fn fit(
     let k0 = setting.nominal_scale_m_s2_per_lsb;
     let to = ToParameters::Exact { gravity_m_s2: g, nominal_scale: k0 };
     let materials = Materials::of(positions, setting);
-    let failed =
-        || EstimateError::NotConverged { iterations: EXPANSIONS, last_change: f64::INFINITY };
     let mut reference = start(positions, setting)?;
     let mut expansions = 0;
     let adjusted = loop {
         expansions += 1;
-        let a = adjust(reference, positions, setting, options, &materials).ok_or_else(failed)?;
+        let a = adjust(reference, positions, setting, options, &materials)
+            .ok_or(EstimateError::OnlyBounds)?;
         let reading = Reading { basis: &a.basis, reference, to };
         let next = reading.unknowns(a.solution.shift);
         let size = next[1].hypot(next[2]);
@@ -97,7 +122,7 @@ pub(super) fn fit(
     let free = options.weights == Weights::Angle;
     let spread = uncertainty(&adjusted, &materials, &reading, free, options.level);
     if spread.values.iter().any(|v| !v.is_finite()) {
-        return Err(failed());
+        return Err(EstimateError::OnlyBounds);
     }
     Ok(present(positions, setting, options, &materials, &adjusted, &reading, spread))
 }
@@ -110,7 +135,16 @@ fn start(positions: &[&Position], setting: &Setting<'_>) -> Result<[f64; 3], Est
     Ok(exact::unknowns(fit.values, setting))
 }
 
-/// One adjustment about a reference.
+/// What scatters, and what is believed of it beforehand.
+fn components(weights: Weights, stated_rad: f64) -> Components {
+    match weights {
+        Weights::Equal | Weights::Stated => Components::Level,
+        Weights::Angle if stated_rad > 0.0 => Components::Both(Beforehand::STATED),
+        Weights::Angle => Components::Both(Beforehand::OPEN),
+    }
+}
+
+/// One adjustment about a reference; `None` where the codes bound the parameters and do not determine them.
 fn adjust(
     reference: [f64; 3],
     positions: &[&Position],
@@ -120,11 +154,7 @@ fn adjust(
 ) -> Option<Adjusted> {
     let stated = setting.bench.angle_uncertainty.map_or(0.0, |a| a.rad());
     let fixed = if options.weights == Weights::Stated { stated } else { 0.0 };
-    let components = match options.weights {
-        Weights::Equal | Weights::Stated => Components::Level,
-        Weights::Angle if stated > 0.0 => Components::Both(Beforehand::STATED),
-        Weights::Angle => Components::Both(Beforehand::OPEN),
-    };
+    let components = components(options.weights, stated);
     let frame = Frame::about(reference, positions, setting, fixed);
     let basis = Basis::of(&frame.rows);
     let floor = smallest_variance(&frame);
@@ -162,7 +192,7 @@ fn adjust(
     let scatter =
         spread::mean_scatter(&exploration.nodes, &dwells, |n| surface.components(n.total, n.share));
     let mut sites = surface.sites().to_vec();
-    let solution = integrate(&dwells, &scatter, &mut sites)?;
+    let solution = integrate(&dwells, &scatter, &mut sites).filter(|s| s.settled)?;
     let is_tested = matches!(components, Components::Both(_)) && stated > 0.0;
     let as_stated = is_tested.then(|| surface.of_angles(stated)).flatten();
     let summary = table::ScatterPoints::of(&exploration, &highest, as_stated, |total, share| {
@@ -261,35 +291,14 @@ fn present(
     let residuals: Vec<Residual> = positions
         .iter()
         .enumerate()
-        .map(|(j, p)| {
-            let site = a.sites[j];
-            let off = site.pull - site.precision * dot3(a.basis.rows[j], a.solution.shift);
-            Residual {
-                position: j,
-                angle_deg: p.angle.deg(),
-                lsb: a.dwells[j].evidence.contradiction(modelled(j)),
-                standardized: (site.precision > 0.0).then(|| off / site.precision.sqrt()),
-            }
+        .map(|(j, p)| Residual {
+            position: j,
+            angle_deg: p.angle.deg(),
+            lsb: a.dwells[j].evidence.contradiction(modelled(j)),
+            standardized: a.standardized(j),
         })
         .collect();
-    let weighted_rows = (0..positions.len())
-        .map(|j| {
-            let site = a.sites[j];
-            // A dwell that says nothing has no equation: an infinite deviation, held finite.
-            let precision = site.precision.max(1e-12);
-            let sd_lsb = precision.sqrt().recip();
-            let row = a.frame.rows[j];
-            let offset = site.pull / precision;
-            let y = dot3(row, a.frame.reference) + offset;
-            WeightedRow {
-                row: row.map(|x| x / sd_lsb),
-                y: y / sd_lsb,
-                sd_lsb,
-                residual: (offset - dot3(row, shift)) / sd_lsb,
-                is_bound: matches!(a.dwells[j].evidence, Evidence::Curve(_)),
-            }
-        })
-        .collect();
+    let weighted_rows = (0..positions.len()).map(|j| a.weighted_row(j, shift)).collect();
     let squares: f64 = residuals.iter().map(|r| r.lsb * r.lsb).sum();
     Fit {
         values: spread.values,

@@ -75,10 +75,6 @@ pub(super) struct Surface<'a> {
     pub floor: f64,
     variances: Vec<f64>,
     sites: Vec<Site>,
-    /// Evaluations done.
-    pub evaluations: usize,
-    /// Points where the sweeps did not settle.
-    pub unsettled: usize,
 }
 
 impl<'a> Surface<'a> {
@@ -96,8 +92,6 @@ impl<'a> Surface<'a> {
             floor: if floor.is_finite() && floor > 0.0 { floor } else { 1e-12 },
             variances: vec![0.0; dwells.len()],
             sites: vec![Site::default(); dwells.len()],
-            evaluations: 0,
-            unsettled: 0,
         }
     }
 
@@ -117,13 +111,11 @@ impl<'a> Surface<'a> {
             *v = d.known_variance
                 + total * ((1.0 - share) + share * d.steepness / self.mean_steepness);
         }
-        self.evaluations += 1;
         let out = integrate(self.dwells, &self.variances, &mut self.sites);
         if out.is_none_or(|s| !s.settled) {
             // A start from the last point may be a bad one.
             self.sites.fill(Site::default());
         }
-        self.unsettled += usize::from(out.is_some_and(|s| !s.settled));
         out
     }
 
@@ -275,6 +267,10 @@ impl<'a> Surface<'a> {
         for (u, weight) in gauss_legendre(points) {
             let x = from + (to - from) * 0.5 * (1.0 + u);
             let (density, solution) = self.ln_density(x, share)?;
+            // What did not settle has no say.
+            if !solution.settled {
+                continue;
+            }
             out.nodes.push(Node {
                 total: self.total(x),
                 share,
