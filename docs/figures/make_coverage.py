@@ -39,9 +39,10 @@ def main():
         ax.grid(axis="x", alpha=0.3)
         ax.tick_params(labelsize=8)
     axes[0].set_yticks(range(len(scenarios)), scenarios)
-    axes[0].invert_yaxis()
-    axes[2].legend(fontsize=7, loc="lower right")
-    fig.tight_layout()
+    handles, labels = axes[2].get_legend_handles_labels()
+    fig.legend(handles, labels, fontsize=8, loc="lower center", ncol=3, frameon=False)
+    axes[0].set_ylim(len(scenarios) - 0.5, -0.5)
+    fig.tight_layout(rect=(0, 0.04, 1, 1))
     matplotlib.rcParams["svg.hashsalt"] = "tumble"
     fig.savefig(HERE / "coverage.svg", metadata={"Date": None})
 

@@ -152,8 +152,14 @@ fn intervals_hold_what_they_say() {
                 claimed[i]
             );
             if let Some(f) = &mut file {
-                writeln!(f, "{},{},{n},{a:.5},{b:.5},{c:.5},{:.4}", s.name, names()[i], claimed[i])
-                    .unwrap();
+                writeln!(
+                    f,
+                    "\"{}\",{},{n},{a:.5},{b:.5},{c:.5},{:.4}",
+                    s.name,
+                    names()[i],
+                    claimed[i]
+                )
+                .unwrap();
             }
             let (low, high) = s.allowed;
             let se = fraction_se(0.95, n);
