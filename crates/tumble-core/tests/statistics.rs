@@ -347,3 +347,35 @@ fn slow_noise_within_dwells_is_named_and_white_noise_is_not() {
     let (factor, named) = inflation(&white);
     assert!(factor < 1.2 && !named, "{factor}");
 }
+
+/// A quiet converter on a good table: boxes are no residuals, and repeated codes no copies.
+#[test]
+fn sound_quiet_experiments_are_not_rejected() {
+    for (noise_lsb, scatter_arcmin) in [(0.001, 0.05), (0.03, 0.2), (0.001, 0.1)] {
+        for seed in 0..12 {
+            let base = Preset::Paper3.truth();
+            let truth = Truth {
+                seed: 300 + seed,
+                noise_m_s2: noise_lsb * base.nominal_scale_m_s2_per_lsb,
+                setting_scatter: Angle::from_arcmin(scatter_arcmin),
+                // Where codes change against the angles differs from seed to seed.
+                bias_m_s2: 0.002_3 * seed as f64,
+                angles_deg: parse_plan("-65:65:60").unwrap(),
+                dwell_s: 1.0,
+                runs: 2,
+                ..base
+            };
+            let a = assess(&experiment(&truth), &EstimateOptions::default()).unwrap();
+            let rejected: Vec<String> = a
+                .findings
+                .iter()
+                .filter(|f| f.kind.severity() == Severity::Reject)
+                .map(|f| format!("{} {}", f.headline(), f.observed))
+                .collect();
+            assert!(
+                rejected.is_empty(),
+                "{noise_lsb} LSB, {scatter_arcmin}′, seed {seed}: {rejected:?}"
+            );
+        }
+    }
+}

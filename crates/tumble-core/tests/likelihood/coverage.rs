@@ -170,8 +170,8 @@ fn intervals_hold_what_they_say() {
                     names()[i]
                 ));
             }
-            // What the code must never do, whatever the goal: two percent and chance beyond it.
-            assert!(b > low - 0.02 - 4.0 * se, "{}, {}: covers {b:.4}", s.name, names()[i]);
+            // Too small is wrong, too large is only printed.
+            assert!(b > low - 4.0 * se, "{}, {}: covers {b:.4}", s.name, names()[i]);
         }
     }
     println!("outside of what is allowed: {missed:#?}");
