@@ -161,9 +161,9 @@ pub struct ProfileIntervals {
 /// from dwell to dwell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scatter {
-    /// `σ`: standard deviation of the analogue value of a single sample.
-    pub noise_lsb: Ranged,
-    /// Whether `σ` is only bounded: hardly any dwell shows more than one code.
+    /// `σ`: standard deviation of the analogue value of a single sample; absent where nothing tells it from scatter.
+    pub noise_lsb: Option<Ranged>,
+    /// Whether `σ` is only bounded from above: hardly any dwell shows more than one code.
     pub noise_is_bound: bool,
     /// `τ0`: scatter that is the same at all angles.
     pub level_lsb: Ranged,

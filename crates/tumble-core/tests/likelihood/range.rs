@@ -68,7 +68,7 @@ fn noise_from_a_hundredth_to_thousands_of_lsb() {
                     worst(&truth, &e)
                 );
                 let s = e.scatter.unwrap();
-                let n = s.noise_lsb;
+                let n = s.noise_lsb.unwrap();
                 assert!(
                     n.low <= n.value && n.value <= n.high,
                     "{quantizer:?} σ {sigma} τ0 {level}: {s:?}"
@@ -89,6 +89,14 @@ fn dwells_of_a_single_code_are_bounds() {
     let e = fit(&truth, &run, Weights::Angle);
     assert!(worst(&truth, &e) < 4.0, "{}", worst(&truth, &e));
     assert!(e.profile.is_some());
+    // The noise is bounded by what single codes allow, and the bound holds the truth.
+    let s = e.scatter.unwrap();
+    let noise = s.noise_lsb.unwrap();
+    assert!(s.noise_is_bound && noise.high >= truth.sigma && noise.high < 0.1, "{noise:?}");
+    // One sample a dwell tells nothing of the noise.
+    let single = Truth { samples: 1, ..truth.clone() };
+    let bare = fit(&single, &single.run(3).positions, Weights::Angle);
+    assert_eq!(bare.scatter.unwrap().noise_lsb, None);
     let averages = try_fit(&truth, &run, Method::Exact, Weights::Equal).unwrap();
     let u = |e: &Estimate| e.standard_uncertainty(Parameter::ScaleError).unwrap();
     // Sixty boxes narrow like 1/60, averages like 1/√60.
@@ -200,7 +208,7 @@ fn readings_that_are_real_numbers() {
         .collect();
     let e = fit(&truth, &run, Weights::Angle);
     assert!(worst(&truth, &e) < 4.0);
-    assert!((e.scatter.unwrap().noise_lsb.value - 1.253).abs() < 0.01);
+    assert!((e.scatter.unwrap().noise_lsb.unwrap().value - 1.253).abs() < 0.01);
 }
 
 #[test]

@@ -329,7 +329,7 @@ fn scatter(s: &tumble_core::estimate::Scatter) -> wire::Scatter {
         interval: [r.low / unit, r.high / unit],
     };
     wire::Scatter {
-        noise_lsb: ranged(s.noise_lsb, 1.0),
+        noise_lsb: s.noise_lsb.map(|r| ranged(r, 1.0)),
         noise_is_bound: s.noise_is_bound,
         level_lsb: ranged(s.level_lsb, 1.0),
         angle_arcmin: ranged(s.angle_rad, ARCMIN_RAD),

@@ -207,7 +207,8 @@ pub struct Ranged {
 /// Noise within dwells and scatter between them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Scatter {
-    pub noise_lsb: Ranged,
+    /// `null`: one sample a dwell, nothing tells noise from scatter.
+    pub noise_lsb: Option<Ranged>,
     pub noise_is_bound: bool,
     pub level_lsb: Ranged,
     pub angle_arcmin: Ranged,

@@ -5,7 +5,7 @@ use tumble_io::passport::{Ranged, Run, Scatter};
 
 use super::parts::{number, numbers, table, text};
 use super::{Page, section};
-use crate::numbers::{interval, typographic};
+use crate::numbers::{NONE, interval, typographic};
 use crate::runs::MOST_RUNS;
 use crate::words::shortened;
 
@@ -34,10 +34,10 @@ pub(super) fn section_of(page: &Page<'_>) -> Markup {
 }
 
 fn row(run: &Run, s: &Scatter) -> Vec<String> {
-    let noise = if s.noise_is_bound {
-        format!("< {}", number(s.noise_lsb.interval[1], 2))
-    } else {
-        shown(&s.noise_lsb)
+    let noise = match &s.noise_lsb {
+        None => NONE.to_owned(),
+        Some(r) if s.noise_is_bound => format!("< {}", number(r.interval[1], 2)),
+        Some(r) => shown(r),
     };
     vec![shortened(&run.name, 20), noise, shown(&s.total_lsb), shown(&s.total_arcmin), made_of(s)]
 }

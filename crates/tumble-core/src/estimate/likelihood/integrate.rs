@@ -51,7 +51,7 @@ pub(super) struct Solution {
 /// **Model** `∏_j ∫ L_j(μ) N(μ; m_j(θ), v_j) dμ`, `m_j` linear in `θ`. Where dwells are Gaussian the integral is
 /// exact and its logarithm is the restricted likelihood (REML). Where they are boxes, each is replaced by the Gaussian
 /// that has the same mean and variance in the company of the others (expectation propagation, T. Minka, 2001); all
-/// factors are log-concave, so the fixed point is the only one.
+/// factors are log-concave, which keeps every precision from turning negative.
 ///
 /// `sites` holds the Gaussians and is a start for the next call.
 pub(super) fn integrate(

@@ -172,7 +172,7 @@ fn adjust(
         Components::Both(_) => 0.5,
         Components::Level => 0.0,
     };
-    let noise = noise::settle(materials, share, dwells_at)?;
+    let mut noise = noise::settle(materials, share, dwells_at)?;
     let dwells = dwells_at(noise.sigma);
     let curved = dwells.iter().any(|d| matches!(d.evidence, Evidence::Curve(_)));
     let (shares, points) = if curved { FEWER_NODES } else { NODES };
@@ -180,6 +180,7 @@ fn adjust(
     let mut exploration = surface.explore(components, shares, points, noise.start)?;
     let highest = surface.highest(&exploration.summits)?;
     exploration.nodes.iter_mut().for_each(|n| n.ln_weight += noise.own_width.ln());
+    let mut groups = vec![exploration.nodes.len()];
     for other in &noise.others {
         let there = dwells_at(other.sigma);
         let more = Surface::new(&there).explore(components, shares, points, Some(other.start))?;
@@ -188,6 +189,10 @@ fn adjust(
                 .into_iter()
                 .map(|n| scatter::Node { ln_weight: n.ln_weight + other.width.ln(), ..n }),
         );
+        groups.push(exploration.nodes.len());
+    }
+    if groups.len() > 1 {
+        noise.spread_over(&exploration.weights_of(&groups));
     }
     let scatter =
         spread::mean_scatter(&exploration.nodes, &dwells, |n| surface.components(n.total, n.share));

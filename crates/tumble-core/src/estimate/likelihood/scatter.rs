@@ -43,6 +43,20 @@ pub(super) struct Exploration {
     pub summits: Vec<Summit>,
 }
 
+impl Exploration {
+    /// Weights of groups of nodes that end at given numbers, but for a common factor.
+    pub fn weights_of(&self, ends: &[usize]) -> Vec<f64> {
+        let top = self.nodes.iter().map(|n| n.ln_weight).fold(f64::NEG_INFINITY, f64::max);
+        let mut from = 0;
+        let group = |to: &usize| {
+            let sum = self.nodes[from..*to].iter().map(|n| (n.ln_weight - top).exp()).sum();
+            from = *to;
+            sum
+        };
+        ends.iter().map(group).collect()
+    }
+}
+
 /// The best total for one share.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Summit {

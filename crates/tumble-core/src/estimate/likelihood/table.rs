@@ -1,8 +1,8 @@
 //! How good the table is: noise and scatter of a run, with intervals.
 
-use super::Adjusted;
 use super::material::Materials;
 use super::scatter::{Exploration, Summit};
+use super::{Adjusted, noise};
 use crate::estimate::Setting;
 use crate::estimate::types::{AgainstStated, Ranged, Scatter, Split};
 use crate::stats::{chi_squared_p_value, normal_quantile};
@@ -122,11 +122,15 @@ pub(super) fn scatter(
     let full_scale = unknowns[1].hypot(unknowns[2]);
     let points = &a.summary;
     let reach = normal_quantile(0.5 + 0.5 * level) * a.noise.ln_sd;
-    let noise_lsb = Ranged {
-        value: a.noise.sigma,
-        low: a.noise.sigma * (-reach).exp(),
-        high: if reach.is_finite() { a.noise.sigma * reach.exp() } else { 0.5 },
-    };
+    let sigma = a.noise.sigma;
+    let noise_is_bound = a.noise.ln_sd.is_infinite();
+    // One sample a dwell: all of the noise is scatter, and nothing is known of it alone.
+    let noise_lsb = (materials.noise_dof > 0.0).then(|| match noise_is_bound {
+        true => {
+            Ranged { value: sigma, low: 0.0, high: noise::upper_bound(materials, level).max(sigma) }
+        }
+        false => Ranged { value: sigma, low: sigma * (-reach).exp(), high: sigma * reach.exp() },
+    });
     let split = match points.against {
         None => Split::NotAsked,
         Some((angles_alone, levels_alone)) if angles_alone.max(levels_alone) > NEEDED => {
@@ -136,7 +140,7 @@ pub(super) fn scatter(
     };
     Scatter {
         noise_lsb,
-        noise_is_bound: a.noise.ln_sd.is_infinite(),
+        noise_is_bound,
         level_lsb: points.ranged(level, |t0, _| t0.sqrt()),
         angle_rad: points.ranged(level, |_, tp| tp.sqrt()),
         total_lsb: points.ranged(level, |t0, tp| (t0 + tp * full_scale * full_scale).sqrt()),
