@@ -1,6 +1,6 @@
 //! What was measured, before anything is computed from it.
 
-use crate::{Angle, ConverterEnds, Gravity, Quantizer, Readings};
+use crate::{Angle, ConverterEnds, Gravity, Quantizer, Readings, Record};
 
 /// One sensor, one axis, one bench, one or more runs.
 #[derive(Debug, Clone, PartialEq)]
@@ -112,6 +112,8 @@ pub struct Position {
     pub temperature_degc: Option<f64>,
     /// Where it was recorded, for people: `run-1.csv, dwell 7 (−24°)`.
     pub place: String,
+    /// What the record shows beside the readings.
+    pub record: Record,
 }
 
 /// A series of positions in one mounting and one power-up.

@@ -106,6 +106,32 @@ finding_kinds! {
     NotSettled = "T0116", Warning, "the estimate did not settle";
     /// The iteration found no fixed point.
     NotConverged = "T0117", Reject, "the adjustment did not converge";
+    /// The codes of a two's complement converter, read without their sign.
+    CodesWrap = "T0118", Reject, "the codes wrap: signed words read as unsigned";
+    /// One angle contradicts the others and looks like a slip of the pen.
+    MistypedAngle = "T0119", Reject, "an angle is mistyped";
+    /// The logger filled the end of the record with zeros.
+    ZeroRows = "T0120", Reject, "zero rows at the end of a record";
+    /// One position contradicts the others, and no slip of the pen explains it.
+    DwellDoesNotFit = "T0121", Warning, "a dwell does not fit the others";
+    /// The reading drifts through a dwell.
+    DwellDrifts = "T0122", Warning, "a dwell drifts: table or sensor had not settled";
+    /// The reading jumps within a dwell.
+    DwellTwoLevels = "T0123", Warning, "a dwell has two levels: table or sensor moved";
+    /// Single samples far from the rest of their dwell.
+    OutlyingSamples = "T0124", Warning, "samples far from the rest of their dwell";
+    /// Outside the limits of the catalogue's entry.
+    OutsideTypeLimits = "T0125", Warning, "outside the limits of the sensor's type";
+    /// The recorded time steps back.
+    TimeBackwards = "T0126", Warning, "time runs backwards";
+    /// The recorded times contradict the stated rate.
+    RateDisagrees = "T0127", Warning, "the recorded rate is not the stated one";
+    /// Samples are missing between those recorded.
+    MissingSamples = "T0128", Warning, "samples are missing in a dwell";
+    /// The same time twice.
+    RepeatedSamples = "T0129", Warning, "samples with the same time";
+    /// Real numbers where the nominal scale is one per LSB.
+    UnitIsNotTheScales = "T0130", Reject, "the readings are not in the unit of the nominal scale";
     /// Too few distinct angles for the parameters.
     RankDeficient = "T0201", Missing, "the positions do not determine all parameters";
     /// As many distinct angles as parameters, no repeats.
@@ -160,6 +186,14 @@ finding_kinds! {
     CompensationWorse = "T0315", Warning, "compensation does not reduce the error on other runs";
     /// Noise within dwells is not white.
     SlowNoise = "T0316", Note, "noise within dwells is not white";
+    /// Rows without a reading.
+    RowsWithoutReading = "T0317", Warning, "rows without a reading were left out";
+    /// Start or end of dwells left out.
+    SettlingLeftOut = "T0318", Note, "settling was left out";
+    /// Dwells cut out of a continuous record.
+    DwellsCutOut = "T0319", Note, "dwells were cut out of a continuous record";
+    /// Dwells beyond the stated range of the table.
+    AngleOutsideRange = "T0320", Warning, "dwells outside the table's stated range";
 }
 
 #[cfg(test)]

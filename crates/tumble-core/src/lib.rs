@@ -18,6 +18,7 @@ pub mod linalg;
 mod nominal;
 mod quantizer;
 mod readings;
+mod record;
 pub mod simulate;
 pub mod stats;
 pub mod term;
@@ -37,4 +38,5 @@ pub use nominal::{
 };
 pub use quantizer::{Compensation, ConverterEnds, Quantizer, QuantizerOffset};
 pub use readings::{Readings, ValueMoments, ValueOutOfRange};
+pub use record::{Dial, Record, Timing};
 pub use units::{ARCMIN_RAD, Angle, Code, STANDARD_GRAVITY_M_S2};

@@ -5,8 +5,8 @@ use rand_pcg::Pcg64;
 
 use super::Truth;
 use crate::{
-    Bench, BlockSums, Code, CodeHistogram, Experiment, Gravity, GravitySource, Output, Position,
-    Quantizer, Readings, Run, Sensor, Targets, ValueMoments,
+    Bench, BlockSums, Code, CodeHistogram, Dial, Experiment, Gravity, GravitySource, Output,
+    Position, Quantizer, Readings, Record, Run, Sensor, Targets, ValueMoments,
 };
 
 /// One simulated dwell.
@@ -200,6 +200,16 @@ fn position(truth: &Truth, bench: &Bench, p: &SimulatedPosition) -> Position {
         readings: readings(truth, p),
         temperature_degc: p.temperature_degc,
         place: format!("{}°", p.angle_deg),
+        record: Record {
+            rows: p.analogue_lsb.len() as u64,
+            dial: Some(Dial {
+                typed: p.angle_deg.to_string(),
+                value: p.angle_deg,
+                unit_deg: 1.0,
+                direction: 1.0,
+            }),
+            ..Record::default()
+        },
     }
 }
 

@@ -6,7 +6,7 @@ use rand_pcg::Pcg64Mcg;
 use tumble_core::estimate::Setting;
 use tumble_core::{
     ARCMIN_RAD, Angle, Bench, BlockSums, Code, CodeHistogram, ConverterEnds, Gravity,
-    GravitySource, Position, Quantizer, Readings, Seat,
+    GravitySource, Position, Quantizer, Readings, Record, Seat,
 };
 
 pub const GRAVITY: f64 = 9.81;
@@ -152,6 +152,7 @@ impl Truth {
                 readings,
                 temperature_degc: None,
                 place: String::new(),
+                record: Record::default(),
             });
         }
         out

@@ -6,8 +6,8 @@ use tumble_core::estimate::{
     Estimate, EstimateError, EstimateOptions, Method, Parameter, Split, Weights, estimate,
 };
 use tumble_core::{
-    Angle, BlockSums, Code, CodeHistogram, ConverterEnds, Position, Quantizer, Readings, Seat,
-    ValueMoments,
+    Angle, BlockSums, Code, CodeHistogram, ConverterEnds, Position, Quantizer, Readings, Record,
+    Seat, ValueMoments,
 };
 
 use crate::bench::{Truth, equal};
@@ -288,6 +288,7 @@ proptest! {
                     readings: Readings::Codes { histogram, blocks: BlockSums::default() },
                     temperature_degc: None,
                     place: String::new(),
+                record: Record::default(),
                 }
             })
             .collect();

@@ -6,8 +6,8 @@ use std::path::{Component, Path, PathBuf};
 use std::thread;
 
 use tumble_core::{
-    Angle, Bench, Experiment, Finding, FindingKind, Output, Position, Readings, Run, Seat, Sensor,
-    VerticalPair,
+    Angle, Bench, Dial, Experiment, Finding, FindingKind, Output, Position, Readings, Record, Run,
+    Seat, Sensor, VerticalPair,
 };
 
 use crate::csv::{Dwell, RunFileOptions, read_run_file};
@@ -284,6 +284,17 @@ impl Reader<'_> {
                 index + 1,
                 dwell.dial_deg
             ),
+            record: Record {
+                file: file.to_owned(),
+                line: Some(dwell.line),
+                dial: Some(Dial {
+                    typed: dwell.dial_deg.to_string(),
+                    value: dwell.dial_deg,
+                    unit_deg: 1.0,
+                    direction: turned * sign,
+                }),
+                ..Record::default()
+            },
         }
     }
 
@@ -346,7 +357,8 @@ impl Reader<'_> {
                 (_, Some(mean)) => return Err(value(key, mean, "a file or a mean code, not both")),
             };
             let angle = Angle::from_deg(if seat == Seat::Down { -90.0 } else { 90.0 });
-            Ok(Position { angle, seat, readings, temperature_degc, place })
+            let record = Record { file: place.clone(), ..Record::default() };
+            Ok(Position { angle, seat, readings, temperature_degc, place, record })
         };
         Ok(VerticalPair { up: dwell(Seat::Up)?, down: dwell(Seat::Down)?, run: scale.run.clone() })
     }
