@@ -21,6 +21,7 @@ mod readings;
 mod record;
 pub mod simulate;
 pub mod stats;
+mod stillness;
 pub mod term;
 mod units;
 
@@ -39,4 +40,5 @@ pub use nominal::{
 pub use quantizer::{Compensation, ConverterEnds, Quantizer, QuantizerOffset};
 pub use readings::{Readings, ValueMoments, ValueOutOfRange};
 pub use record::{Dial, Record, Timing};
+pub use stillness::{settled_stretch, still_stretches};
 pub use units::{ARCMIN_RAD, Angle, Code, STANDARD_GRAVITY_M_S2};

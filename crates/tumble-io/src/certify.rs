@@ -8,6 +8,7 @@ use tumble_core::estimate::EstimateOptions;
 use crate::error::ReadError;
 use crate::folder::read_experiment;
 use crate::passport::{self, Passport};
+use crate::source::Watch;
 
 /// Options of [`certify`].
 #[derive(Debug, Clone, Default)]
@@ -43,7 +44,16 @@ impl std::error::Error for CertifyError {}
 /// Reads an experiment folder, judges it and makes its passport. Rejected and indeterminate experiments get a
 /// passport too; it says why.
 pub fn certify(folder: &Path, options: &CertifyOptions) -> Result<Passport, CertifyError> {
-    let read = read_experiment(folder).map_err(CertifyError::Read)?;
+    certify_watched(folder, options, &())
+}
+
+/// [`certify`], telling how far the reading of files has come.
+pub fn certify_watched(
+    folder: &Path,
+    options: &CertifyOptions,
+    watch: &dyn Watch,
+) -> Result<Passport, CertifyError> {
+    let read = read_experiment(folder, watch).map_err(CertifyError::Read)?;
     let mut assessment =
         assess(&read.experiment, &options.estimate).map_err(CertifyError::Assess)?;
     assessment.findings.extend(read.findings.iter().cloned());

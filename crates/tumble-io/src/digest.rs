@@ -8,18 +8,24 @@ use sha2::{Digest, Sha256};
 pub(crate) struct DigestingReader<R> {
     inner: R,
     hasher: Sha256,
+    taken: u64,
 }
 
 impl<R: Read> DigestingReader<R> {
     pub(crate) fn new(inner: R) -> Self {
-        Self { inner, hasher: Sha256::new() }
+        Self { inner, hasher: Sha256::new(), taken: 0 }
     }
 
-    /// Reads what is left and gives the digest of the whole input.
-    pub(crate) fn finish(mut self) -> io::Result<String> {
+    /// Bytes that were read.
+    pub(crate) fn taken(&self) -> u64 {
+        self.taken
+    }
+
+    /// Reads what is left and gives digest and length of the whole input.
+    pub(crate) fn finish(mut self) -> io::Result<(String, u64)> {
         let mut rest = [0u8; 1 << 12];
         while self.read(&mut rest)? > 0 {}
-        Ok(hex(&self.hasher.finalize()))
+        Ok((hex(&self.hasher.finalize()), self.taken))
     }
 }
 
@@ -27,6 +33,7 @@ impl<R: Read> Read for DigestingReader<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let n = self.inner.read(buffer)?;
         self.hasher.update(&buffer[..n]);
+        self.taken += n as u64;
         Ok(n)
     }
 }
@@ -51,6 +58,6 @@ mod tests {
         let mut reader = DigestingReader::new(&b"abc"[..]);
         let mut one = [0u8; 1];
         reader.read_exact(&mut one).unwrap();
-        assert_eq!(reader.finish().unwrap(), abc);
+        assert_eq!(reader.finish().unwrap(), (abc.to_owned(), 3));
     }
 }

@@ -133,6 +133,13 @@ pub enum Problem {
         /// Limit in bytes.
         limit: u64,
     },
+    /// More bytes than a packed file of its size may hold.
+    TooDense {
+        /// Limit of unpacked over stored bytes.
+        limit: u64,
+    },
+    /// The file was written to while it was read.
+    Changed,
     /// A line that is too long to be data.
     LineTooLong {
         /// Limit in bytes.
@@ -152,12 +159,28 @@ pub enum Problem {
         /// What to write.
         remedy: String,
     },
+    /// Numbers where the header is expected.
+    NoHeader {
+        /// The line.
+        first: String,
+        /// Its fields.
+        columns: usize,
+    },
+    /// A header whose unit is not the one that its column would be read in.
+    HeaderUnit {
+        /// What the header says.
+        unit: &'static str,
+        /// What to write.
+        remedy: String,
+    },
     /// A row with another number of fields than the header.
     Fields {
         /// In the row.
         seen: usize,
         /// In the header.
         expected: usize,
+        /// The separator's name.
+        delimiter: &'static str,
     },
     /// A field that is not what its column holds.
     Field {
@@ -168,11 +191,43 @@ pub enum Problem {
         /// What to do.
         remedy: &'static str,
     },
+    /// A problem of which a look at the file tells more.
+    Advised {
+        /// The problem.
+        problem: Box<Problem>,
+        /// What to write.
+        advice: String,
+    },
+    /// Another number of angles than of dwells in a continuous record.
+    AnglesOfDwells {
+        /// Angles that experiment.toml lists.
+        listed: usize,
+        /// Dwells that were found: lines and level of each.
+        found: Vec<String>,
+    },
+    /// A dwell or record that is too long to be searched for where it stands still.
+    TooLongToSearch {
+        /// Limit of samples.
+        limit: usize,
+    },
     /// A dwell that holds more different codes than noise can make.
     NotADwell {
         /// Limit of different codes.
         limit: usize,
     },
+}
+
+impl Problem {
+    /// A key that is not known, with the nearest known one.
+    pub(crate) fn unknown_key(key: &str, known: Vec<String>) -> Self {
+        let nearest = known
+            .iter()
+            .map(|k| (strsim::jaro_winkler(&key.to_lowercase(), k), k))
+            .filter(|(similar, _)| *similar > 0.75)
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, k)| k.clone());
+        Self::UnknownKey { key: key.to_owned(), nearest, known }
+    }
 }
 
 impl fmt::Display for ReadError {
@@ -223,6 +278,38 @@ impl fmt::Display for Problem {
                 "unpacks to more than {} GiB; split the record into runs, or unpack it",
                 limit >> 30
             ),
+            Self::TooDense { limit } => write!(
+                f,
+                "unpacks to more than {limit} times its size; no record of a converter does: unpack it and look at it"
+            ),
+            Self::Changed => f.write_str(
+                "the file was written to while it was read; stop the logger, or copy the finished part into the folder",
+            ),
+            Self::NoHeader { first, columns } => write!(
+                f,
+                "`{}` holds numbers where names of columns are expected; name them in a first line, or write \
+                 header_line = 0 and columns = {{angle_deg = 1, code = {}}} in [csv] (numbers of the columns)",
+                visible(first),
+                (*columns).max(1)
+            ),
+            Self::HeaderUnit { unit, remedy } => write!(f, "the header says {unit}; {}", printable(remedy)),
+            Self::Advised { problem, advice } => write!(f, "{problem}. {}", printable(advice)),
+            Self::AnglesOfDwells { listed, found } => {
+                const SHOWN: usize = 80;
+                write!(
+                    f,
+                    "angles_deg lists {listed} angles, and the sensor stood still {} times: {}{}; list the dial's angle for \
+                     each of them in this order, nan for one that does not count",
+                    found.len(),
+                    found.iter().take(SHOWN).cloned().collect::<Vec<_>>().join(", "),
+                    if found.len() > SHOWN { ", …" } else { "" }
+                )
+            }
+            Self::TooLongToSearch { limit } => write!(
+                f,
+                "more than {limit} samples to be searched for where the sensor stood still; give discard_s in seconds, or \
+                 split the record"
+            ),
             Self::LineTooLong { limit } => {
                 write!(f, "a line longer than {limit} bytes; is this a CSV file?")
             }
@@ -236,9 +323,18 @@ impl fmt::Display for Problem {
                     printable(remedy)
                 )
             }
-            Self::Fields { seen, expected } => write!(
+            Self::Fields { seen, expected, delimiter } => write!(
                 f,
-                "{seen} fields where the header has {expected}; mend or remove the row (a truncated last line is common)"
+                "{seen} fields where the header has {expected} (separated by {}); {}",
+                match *delimiter {
+                    "tab" | "blanks" => format!("{delimiter}s").replace("ss", "s"),
+                    mark => format!("`{mark}`"),
+                },
+                if *delimiter == "," && seen > expected {
+                    "decimal commas between commas cannot be told apart: export with `;`, or with decimal points"
+                } else {
+                    "mend or remove the row (a truncated last line is common)"
+                }
             ),
             Self::Field { text, expected, remedy } => {
                 write!(f, "`{}` is not {expected}; {remedy}", visible(text))

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
+use crate::csv::Mapping;
 use crate::error::{Place, Problem, ReadError};
 
 /// The whole file.
@@ -19,6 +20,8 @@ pub(crate) struct ExperimentFile {
     pub(crate) sensor: SensorTable,
     pub(crate) output: OutputTable,
     pub(crate) bench: BenchTable,
+    #[serde(default)]
+    pub(crate) csv: CsvTable,
     pub(crate) scale: Option<ScaleTable>,
     #[serde(default)]
     pub(crate) run: Vec<RunTable>,
@@ -68,7 +71,36 @@ pub(crate) struct BenchTable {
     pub(crate) angle_range_deg: Option<[f64; 2]>,
     pub(crate) angle_sign: Option<f64>,
     pub(crate) angle_zero_deg: Option<f64>,
+    pub(crate) angle_unit: Option<String>,
     pub(crate) updown_lean_arcmin: Option<f64>,
+}
+
+/// How the run files are written.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct CsvTable {
+    pub(crate) header_line: Option<u64>,
+    pub(crate) data_line: Option<u64>,
+    pub(crate) delimiter: Option<String>,
+    pub(crate) decimal: Option<String>,
+    pub(crate) comment: Option<String>,
+    pub(crate) missing: Option<String>,
+    pub(crate) code_format: Option<String>,
+    pub(crate) code_bits: Option<u32>,
+    pub(crate) time_unit: Option<String>,
+    /// For all files; a run's own go before.
+    #[serde(default)]
+    pub(crate) columns: Mapping,
+    #[serde(default)]
+    pub(crate) rows: BTreeMap<String, String>,
+}
+
+/// Start of each dwell that is thrown away: seconds, or `"detect"`.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(untagged)]
+pub(crate) enum DiscardValue {
+    Seconds(f64),
+    Word(String),
 }
 
 #[derive(Debug, Clone, Deserialize)]
@@ -83,8 +115,10 @@ pub(crate) struct ScaleTable {
     pub(crate) up_std_code: Option<f64>,
     pub(crate) down_std_code: Option<f64>,
     #[serde(default)]
-    pub(crate) columns: BTreeMap<String, String>,
-    pub(crate) discard_s: Option<f64>,
+    pub(crate) columns: Mapping,
+    #[serde(default)]
+    pub(crate) rows: BTreeMap<String, String>,
+    pub(crate) discard_s: Option<DiscardValue>,
     pub(crate) run: Option<String>,
 }
 
@@ -95,12 +129,16 @@ pub(crate) struct RunTable {
     pub(crate) file: Option<String>,
     #[serde(default)]
     pub(crate) files: Vec<AngleFile>,
+    /// Dial angles of the dwells of a continuous record.
+    pub(crate) angles_deg: Option<Vec<f64>>,
     pub(crate) mounting: Option<String>,
     #[serde(default)]
     pub(crate) orientation: Orientation,
     #[serde(default)]
-    pub(crate) columns: BTreeMap<String, String>,
-    pub(crate) discard_s: Option<f64>,
+    pub(crate) columns: Mapping,
+    #[serde(default)]
+    pub(crate) rows: BTreeMap<String, String>,
+    pub(crate) discard_s: Option<DiscardValue>,
     pub(crate) date: Option<toml::Value>,
     pub(crate) operator: Option<String>,
     pub(crate) temperature_degc: Option<f64>,
@@ -162,16 +200,7 @@ fn line_and_column(text: &str, at: usize) -> (u64, usize) {
 fn problem(message: &str) -> Problem {
     let mut quoted = message.split('`').skip(1).step_by(2).map(str::to_owned);
     match (message.starts_with("unknown field"), quoted.next()) {
-        (true, Some(key)) => {
-            let known: Vec<String> = quoted.collect();
-            let nearest = known
-                .iter()
-                .map(|k| (strsim::jaro_winkler(&key.to_lowercase(), k), k))
-                .filter(|(similar, _)| *similar > 0.75)
-                .max_by(|a, b| a.0.total_cmp(&b.0))
-                .map(|(_, k)| k.clone());
-            Problem::UnknownKey { key, nearest, known }
-        }
+        (true, Some(key)) => Problem::unknown_key(&key, quoted.collect()),
         _ => Problem::Toml { message: message.to_owned() },
     }
 }

@@ -13,11 +13,13 @@ mod output;
 pub mod passport;
 mod simulation;
 mod source;
+mod zst;
 
-pub use certify::{CertifyError, CertifyOptions, certify};
+pub use certify::{CertifyError, CertifyOptions, certify, certify_watched};
 pub use compensation::{CompensationRefused, Proof, compensator};
 pub use csv::{CodeStream, CodeStreamError, Reading};
 pub use error::{Place, Problem, ReadError};
 pub use folder::{ExperimentFolder, FileDigest, read_experiment};
 pub use output::{Existing, OutputError, OutputFolder, Written};
 pub use simulation::{SimulationError, SimulationOptions, write_simulation};
+pub use source::Watch;

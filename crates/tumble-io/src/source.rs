@@ -1,38 +1,68 @@
-//! An input file as a stream of text bytes: plain or gzip, bounded, digested.
+//! An input file as a stream of text bytes: plain, gzip or zstd, bounded, digested, watched.
 
 use std::fs::File;
 use std::io::{self, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use flate2::read::MultiGzDecoder;
 
 use crate::digest::DigestingReader;
 use crate::error::{Place, Problem, ReadError};
+use crate::zst::ZstReader;
 
 /// Largest size of an unpacked file. A run of 60 dwells of 30 s at 50 Hz has 1 MB; 4 GiB are 300 million rows.
 const UNPACKED_LIMIT: u64 = 4 << 30;
+/// Unpacked bytes from which the ratio of packing is looked at.
+const RATIO_FROM: u64 = 64 << 20;
+/// Records of a converter pack five to thirty times; a record of one row repeated, two hundred times.
+const RATIO_LIMIT: u64 = 500;
 
-/// First bytes put back before the rest.
-type Rewound<R> = io::Chain<io::Cursor<Vec<u8>>, R>;
-
-/// A file's text, unpacked where it is gzip.
-pub(crate) enum Source {
-    Plain(Rewound<DigestingReader<File>>),
-    Gzip { decoder: Box<MultiGzDecoder<Rewound<DigestingReader<File>>>>, left: u64 },
+/// Told how far the reading of files has come.
+pub trait Watch: Sync + std::fmt::Debug {
+    /// `done` of `total` stored bytes of a file were read.
+    fn progress(&self, file: &str, done: u64, total: u64);
 }
 
-impl Source {
+/// Nobody watches.
+impl Watch for () {
+    fn progress(&self, _: &str, _: u64, _: u64) {}
+}
+
+/// First bytes put back before the rest.
+type Input = io::Chain<io::Cursor<Vec<u8>>, DigestingReader<io::Take<File>>>;
+
+enum Packing {
+    Plain(Input),
+    Gzip(Box<MultiGzDecoder<Input>>),
+    Zst(Box<ZstReader<Input>>),
+}
+
+/// A file's text, unpacked where it is packed.
+pub(crate) struct Source<'w> {
+    packing: Packing,
+    path: PathBuf,
+    shown_as: String,
+    /// Stored bytes when it was opened. No more are read, whatever is added meanwhile.
+    length: u64,
+    unpacked: u64,
+    watch: &'w dyn Watch,
+}
+
+impl Source<'static> {
     /// Opens a file and looks at its first bytes.
     pub(crate) fn open(path: &Path, shown_as: &str) -> Result<Self, ReadError> {
         let fail = |problem| ReadError { place: Place::file(shown_as), problem };
-        let file = File::open(path).map_err(|e| fail(Problem::Io(e)))?;
-        if file.metadata().map_err(|e| fail(Problem::Io(e)))?.is_dir() {
+        // Looked at before it is opened: to open a pipe is to wait for its writer.
+        let kind = std::fs::metadata(path).map_err(|e| fail(Problem::Io(e)))?;
+        if !kind.is_file() {
             return Err(fail(Problem::Format {
-                seen: "a folder, not a file",
+                seen: if kind.is_dir() { "a folder, not a file" } else { "no regular file" },
                 remedy: "name a CSV file",
             }));
         }
-        let mut reader = DigestingReader::new(file);
+        let file = File::open(path).map_err(|e| fail(Problem::Io(e)))?;
+        let length = file.metadata().map_err(|e| fail(Problem::Io(e)))?.len();
+        let mut reader = DigestingReader::new(file.take(length));
         let mut head = vec![0u8; 4];
         let mut got = 0;
         while got < head.len() {
@@ -42,75 +72,124 @@ impl Source {
             }
         }
         head.truncate(got);
-        let kind = head.clone();
-        let rewound = io::Cursor::new(head).chain(reader);
-        match kind[..] {
-            [0x1f, 0x8b, ..] => Ok(Self::Gzip {
-                decoder: Box::new(MultiGzDecoder::new(rewound)),
-                left: UNPACKED_LIMIT,
-            }),
-            [0x28, 0xb5, 0x2f, 0xfd] => Err(fail(Problem::Format {
-                seen: "a zstd file",
-                remedy: "unpack it, or pack it with gzip",
-            })),
-            [b'P', b'K', 3, 4] => Err(fail(Problem::Format {
-                seen: "a zip archive or an Excel file",
-                remedy: "save the sheet as CSV, or unpack the archive",
-            })),
-            [b'P', b'A', b'R', b'1'] => Err(fail(Problem::Format {
-                seen: "a Parquet file",
-                remedy: "convert it to CSV; Parquet is not read yet",
-            })),
-            [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => {
-                Err(fail(Problem::Format { seen: "UTF-16 text", remedy: "save the file as UTF-8" }))
+        let refused = match head[..] {
+            [b'P', b'K', 3, 4] => Some((
+                "a zip archive or an Excel file",
+                "save the sheet as CSV, or unpack the archive",
+            )),
+            [0xd0, 0xcf, 0x11, 0xe0] => Some(("an old Excel file", "save the sheet as CSV")),
+            [b'P', b'A', b'R', b'1'] => {
+                Some(("a Parquet file", "convert it to CSV; Parquet is not read yet"))
             }
-            _ => Ok(Self::Plain(rewound)),
+            [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => Some((
+                "UTF-16 text",
+                "save the file as UTF-8 (a spreadsheet's `CSV UTF-8`, not its `Unicode text`)",
+            )),
+            _ => None,
+        };
+        if let Some((seen, remedy)) = refused {
+            return Err(fail(Problem::Format { seen, remedy }));
+        }
+        let kind = head.clone();
+        let input = io::Cursor::new(head).chain(reader);
+        let packing = match kind[..] {
+            [0x1f, 0x8b, ..] => Packing::Gzip(Box::new(MultiGzDecoder::new(input))),
+            // A zstd frame, or a frame to skip in front of one.
+            [0x28, 0xb5, 0x2f, 0xfd] | [0x50..=0x5f, 0x2a, 0x4d, 0x18] => {
+                Packing::Zst(Box::new(ZstReader::new(input)))
+            }
+            _ => Packing::Plain(input),
+        };
+        Ok(Self {
+            packing,
+            path: path.to_path_buf(),
+            shown_as: shown_as.to_owned(),
+            length,
+            unpacked: 0,
+            watch: &(),
+        })
+    }
+}
+
+impl<'w> Source<'w> {
+    /// The same, telling how far it has come.
+    pub(crate) fn watched<'v>(self, watch: &'v dyn Watch) -> Source<'v> {
+        Source { watch, ..self }
+    }
+
+    fn digesting(&self) -> &DigestingReader<io::Take<File>> {
+        match &self.packing {
+            Packing::Plain(input) => input.get_ref().1,
+            Packing::Gzip(decoder) => decoder.get_ref().get_ref().1,
+            Packing::Zst(decoder) => decoder.get_ref().get_ref().1,
         }
     }
 
     /// Digest of the file as it is stored.
+    ///
+    /// **Errors** where the file was changed while it was read: what was read is then no record of anything.
     pub(crate) fn finish(self) -> io::Result<String> {
-        match self {
-            Self::Plain(chain) => chain.into_inner().1.finish(),
-            Self::Gzip { decoder, .. } => decoder.into_inner().into_inner().1.finish(),
+        let now = std::fs::metadata(&self.path)?.len();
+        let (length, input) = (
+            self.length,
+            match self.packing {
+                Packing::Plain(input) => input,
+                Packing::Gzip(decoder) => decoder.into_inner(),
+                Packing::Zst(decoder) => decoder.into_inner(),
+            },
+        );
+        let (digest, read) = input.into_inner().1.finish()?;
+        if now != length || read != length {
+            return Err(io::Error::other(Stop::Changed));
         }
+        Ok(digest)
     }
-}
 
-/// The limit of unpacked bytes was reached.
-#[derive(Debug)]
-pub(crate) struct UnpackedLimit;
-
-impl std::fmt::Display for UnpackedLimit {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "unpacks to too much")
-    }
-}
-
-impl std::error::Error for UnpackedLimit {}
-
-impl Source {
     /// An error of reading as a problem of the input.
     pub(crate) fn problem(e: io::Error) -> Problem {
-        match e.get_ref() {
-            Some(inner) if inner.is::<UnpackedLimit>() => {
-                Problem::TooLarge { limit: UNPACKED_LIMIT }
-            }
-            _ => Problem::Io(e),
+        match e.get_ref().and_then(|inner| inner.downcast_ref::<Stop>()) {
+            Some(Stop::TooLarge) => Problem::TooLarge { limit: UNPACKED_LIMIT },
+            Some(Stop::TooDense) => Problem::TooDense { limit: RATIO_LIMIT },
+            Some(Stop::Changed) => Problem::Changed,
+            None => Problem::Io(e),
         }
     }
 }
 
-impl Read for Source {
+/// Why reading was stopped.
+#[derive(Debug, Clone, Copy)]
+enum Stop {
+    TooLarge,
+    TooDense,
+    Changed,
+}
+
+impl std::fmt::Display for Stop {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("reading was stopped")
+    }
+}
+
+impl std::error::Error for Stop {}
+
+impl Read for Source<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        match self {
-            Self::Plain(chain) => chain.read(buffer),
-            Self::Gzip { decoder, left } => {
-                let n = decoder.read(buffer)?;
-                *left =
-                    left.checked_sub(n as u64).ok_or_else(|| io::Error::other(UnpackedLimit))?;
-                Ok(n)
+        let n = match &mut self.packing {
+            Packing::Plain(input) => input.read(buffer)?,
+            Packing::Gzip(decoder) => decoder.read(buffer)?,
+            Packing::Zst(decoder) => decoder.read(buffer)?,
+        };
+        let stored = self.digesting().taken();
+        self.watch.progress(&self.shown_as, stored, self.length);
+        if !matches!(self.packing, Packing::Plain(_)) {
+            self.unpacked += n as u64;
+            if self.unpacked > UNPACKED_LIMIT {
+                return Err(io::Error::other(Stop::TooLarge));
+            }
+            if self.unpacked > RATIO_FROM && self.unpacked / RATIO_LIMIT > stored {
+                return Err(io::Error::other(Stop::TooDense));
             }
         }
+        Ok(n)
     }
 }

@@ -18,12 +18,12 @@ fn folder(toml: &str, csv: &[u8]) -> tempfile::TempDir {
 
 fn read(toml: &str, csv: impl AsRef<[u8]>) -> ExperimentFolder {
     let dir = folder(toml, csv.as_ref());
-    read_experiment(dir.path()).unwrap()
+    read_experiment(dir.path(), &()).unwrap()
 }
 
 fn refusal(toml: &str, csv: impl AsRef<[u8]>) -> String {
     let dir = folder(toml, csv.as_ref());
-    read_experiment(dir.path()).unwrap_err().to_string()
+    read_experiment(dir.path(), &()).unwrap_err().to_string()
 }
 
 /// Angle, mean and samples of each dwell.
@@ -120,7 +120,8 @@ fn what_is_not_understood_is_refused_with_its_place_and_a_remedy() {
         ("angle_deg,code\n0,1\n5", &["line 3", "truncated"]),
         ("angle_deg,code\n1,234.5,7\n", &["3 fields"]),
         ("angle_deg;code\n1.234,5;7\n", &["decimal point"]),
-        ("angle_deg,code\n12°,7\n", &["line 2", "column angle_deg"]),
+        ("angle_deg,code\n12:30,7\n", &["line 2", "column angle_deg", "angle_unit = \"dms\""]),
+        ("angle_deg,code\ntwelve,7\n", &["line 2", "column angle_deg"]),
         ("angle_deg,code\n0,99999999999\n", &["integer code"]),
         ("angle_deg,mean_code\n0,1.5\n", &["`samples`"]),
         ("angle_deg,mean_code,samples\n0,1.5,0\n", &["positive number of samples"]),
@@ -172,9 +173,11 @@ fn experiment_toml_is_checked_too() {
         assert!(text.contains(word), "`{text}` does not name `{word}`");
     }
     let empty = tempfile::tempdir().unwrap();
-    assert!(read_experiment(empty.path()).unwrap_err().to_string().contains("tumble simulate"));
     assert!(
-        read_experiment(Path::new("/nonexistent"))
+        read_experiment(empty.path(), &()).unwrap_err().to_string().contains("tumble simulate")
+    );
+    assert!(
+        read_experiment(Path::new("/nonexistent"), &())
             .unwrap_err()
             .to_string()
             .contains("experiment.toml")
@@ -190,6 +193,6 @@ fn links_out_of_the_folder_are_refused() {
     std::fs::write(dir.path().join("experiment.toml"), TOML).unwrap();
     std::os::unix::fs::symlink(outside.path().join("secret.csv"), dir.path().join("run.csv"))
         .unwrap();
-    let text = read_experiment(dir.path()).unwrap_err().to_string();
+    let text = read_experiment(dir.path(), &()).unwrap_err().to_string();
     assert!(text.contains("leaves the experiment folder"), "{text}");
 }

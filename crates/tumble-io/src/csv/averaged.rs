@@ -2,14 +2,14 @@
 
 use std::io::Read;
 
-use tumble_core::Readings;
+use tumble_core::{Dial, Readings, Record};
 
 use super::header::Columns;
 use super::lines::Lines;
 use super::number::{integer, trimmed};
 use super::row::{FieldBuffer, Row};
-use super::run_file::{Dwell, RunFileOptions};
-use crate::error::{Place, ReadError};
+use super::run_file::{Discard, Dwell, RunFileOptions};
+use crate::error::{Place, Problem, ReadError};
 
 /// Reads all dwells of an averaged file.
 pub(super) fn read<R: Read>(
@@ -23,15 +23,32 @@ pub(super) fn read<R: Read>(
         Some(_) => None,
         None => Some(columns.require("angle_deg", header)?),
     };
+    if options.discard != Discard::Seconds(0.0) {
+        return Err(ReadError {
+            place: header.clone(),
+            problem: Problem::Columns {
+                seen: columns.names.clone(),
+                what: "averages have no start that could be thrown away".into(),
+                remedy: "remove discard_s, or give the raw record".into(),
+            },
+        });
+    }
     let mean = columns.require("mean_code", header)?;
     let samples = columns.require("samples", header)?;
     let std = columns.get("std_code");
     let temperature = columns.get("temperature_degc");
+    let mut filters = Vec::new();
+    for (column, text) in options.rows {
+        filters.push((columns.find(column, header)?, text));
+    }
     let mut dwells = Vec::new();
     let mut buffer = FieldBuffer::default();
     while let Some((line, text)) = lines.next_data()? {
         let row = Row { fields: buffer.split(text, columns.delimiter), columns, file: &file, line };
         row.check_width()?;
+        if filters.iter().any(|(i, text)| row.text(*i) != text.as_bytes()) {
+            continue;
+        }
         let written = trimmed(row.fields.get(samples));
         // `1.000` may be one or a thousand: a count has no mark.
         let count = integer(written)
@@ -56,11 +73,19 @@ pub(super) fn read<R: Read>(
             }
             None => None,
         };
-        dwells.push(Dwell {
-            dial_deg: match (angle, options.fixed_angle_deg) {
-                (Some(i), _) => row.real(i, "an angle in degrees")?,
-                (None, fixed) => fixed.unwrap_or(0.0),
+        let dial = match (angle, options.fixed_angle_deg) {
+            (Some(i), _) => Dial {
+                typed: String::from_utf8_lossy(row.text(i)).into_owned(),
+                value: row.dial(i, options.dialect)?,
+                unit_deg: options.angle_unit().in_deg(),
+                direction: 1.0,
             },
+            (None, fixed) => {
+                let value = fixed.unwrap_or(0.0);
+                Dial { typed: value.to_string(), value, unit_deg: 1.0, direction: 1.0 }
+            }
+        };
+        dwells.push(Dwell {
             readings: Readings::Averaged {
                 mean: row.real(mean, "a mean code")?,
                 samples: count,
@@ -70,7 +95,13 @@ pub(super) fn read<R: Read>(
                 Some(i) => Some(row.real(i, "a temperature in °C")?),
                 None => None,
             },
-            line,
+            record: Record {
+                file: file.clone(),
+                line: Some(line),
+                rows: 1,
+                dial: Some(dial),
+                ..Record::default()
+            },
         });
     }
     Ok(dwells)

@@ -2,7 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use super::number::{DecimalSign, trimmed};
+use serde::Deserialize;
+
+use super::clock::TimeUnit;
+use super::dial::AngleUnit;
+use super::dialect::{Delimiter, Dialect};
+use super::number::{DecimalSign, real, trimmed};
+use super::roles::{HeaderUnit, role, role_of_known, split_unit};
+use super::row::FieldBuffer;
 use crate::error::{Place, Problem, ReadError};
 
 /// Columns that a run file may have, and what they hold.
@@ -18,10 +25,30 @@ pub(crate) const KNOWN: [&str; 9] = [
     "position",
 ];
 
+/// A column of the user's file: by its header, or by its number counted from one.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[serde(untagged)]
+pub(crate) enum ColumnRef {
+    Number(u32),
+    Name(String),
+}
+
+impl std::fmt::Display for ColumnRef {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Number(n) => write!(f, "{n}"),
+            Self::Name(name) => f.write_str(name),
+        }
+    }
+}
+
+/// `columns` of experiment.toml: known column → the user's.
+pub(crate) type Mapping = BTreeMap<String, ColumnRef>;
+
 /// Where the columns of a file stand.
 #[derive(Debug, Clone)]
 pub(crate) struct Columns {
-    pub(crate) delimiter: u8,
+    pub(crate) delimiter: Delimiter,
     pub(crate) decimal: DecimalSign,
     /// Names as the header gives them.
     pub(crate) names: Vec<String>,
@@ -31,55 +58,113 @@ pub(crate) struct Columns {
     pub(crate) ignored: Vec<String>,
 }
 
+/// A header's text: UTF-8, else as Windows writes it. Only names are in it, and they are matched as they come.
+pub(crate) fn decoded(line: &[u8]) -> String {
+    match std::str::from_utf8(line) {
+        Ok(text) => text.to_owned(),
+        Err(_) => line.iter().map(|b| char::from(*b)).collect(),
+    }
+}
+
+/// Names of the columns in a header line.
+pub(crate) fn names(text: &str, delimiter: Delimiter) -> Vec<String> {
+    let mut buffer = FieldBuffer::default();
+    let fields = buffer.split(text.as_bytes(), delimiter);
+    (0..fields.len())
+        .map(|i| String::from_utf8_lossy(trimmed(fields.get(i))).trim().to_owned())
+        .collect()
+}
+
 impl Columns {
-    /// Reads a header line. `mapping` names the user's own headers: known column → header.
+    /// Reads a header line.
     pub(crate) fn parse(
         line: &[u8],
         place: &Place,
-        mapping: &BTreeMap<String, String>,
+        dialect: &Dialect,
+        mapping: &Mapping,
     ) -> Result<Self, ReadError> {
         let fail = |problem| Err(ReadError { place: place.clone(), problem });
-        let Ok(text) = std::str::from_utf8(line) else {
-            return fail(Problem::Format {
-                seen: "the header is not UTF-8 text",
-                remedy: "save the file as UTF-8",
-            });
-        };
+        let text = decoded(line);
         if text.contains('\0') {
             return fail(Problem::Format { seen: "binary data", remedy: "give a CSV file" });
         }
-        let (delimiter, decimal) = match text {
-            t if t.contains(';') => (b';', DecimalSign::CommaOrPoint),
-            t if t.contains('\t') => (b'\t', DecimalSign::CommaOrPoint),
-            _ => (b',', DecimalSign::Point),
+        let delimiter = dialect.delimiter.unwrap_or_else(|| Delimiter::of_header(&text));
+        let names = names(&text, delimiter);
+        let decimal = dialect.decimal.unwrap_or_else(|| delimiter.decimal());
+        let number = |n: &String| real(n.as_bytes(), DecimalSign::CommaOrPoint).is_some();
+        if dialect.header_line.is_none() && !names.is_empty() && names.iter().all(number) {
+            return fail(Problem::NoHeader { first: text, columns: names.len() });
+        }
+        Self::located(names, delimiter, decimal, place, mapping)
+    }
+
+    /// Columns of a file without a header, known by their numbers.
+    pub(crate) fn numbered(
+        width: usize,
+        place: &Place,
+        dialect: &Dialect,
+        mapping: &Mapping,
+    ) -> Result<Self, ReadError> {
+        let delimiter = dialect.delimiter.unwrap_or(Delimiter::Byte(b','));
+        let decimal = dialect.decimal.unwrap_or_else(|| delimiter.decimal());
+        let names = (1..=width).map(|n| format!("column {n}")).collect();
+        Self::located(names, delimiter, decimal, place, mapping)
+    }
+
+    fn located(
+        names: Vec<String>,
+        delimiter: Delimiter,
+        decimal: DecimalSign,
+        place: &Place,
+        mapping: &Mapping,
+    ) -> Result<Self, ReadError> {
+        let fail = |what: String, remedy: &str, seen: &[String]| {
+            Err(ReadError {
+                place: place.clone(),
+                problem: Problem::Columns { what, remedy: remedy.into(), seen: seen.to_vec() },
+            })
         };
-        let names: Vec<String> = text
-            .split(char::from(delimiter))
-            .map(|n| String::from_utf8_lossy(trimmed(n.as_bytes())).into_owned())
-            .collect();
         let mut index = BTreeMap::new();
         for known in KNOWN {
-            let wanted = mapping.get(known).map_or(known, String::as_str);
-            let mut places = names.iter().enumerate().filter(|(_, n)| *n == wanted);
-            match (places.next(), places.next()) {
-                (Some(_), Some(_)) => {
-                    return fail(Problem::Columns {
-                        what: format!("column `{wanted}` occurs twice"),
-                        remedy: "rename one of them".into(),
-                        seen: names,
-                    });
+            let wanted = match mapping.get(known) {
+                Some(ColumnRef::Number(n)) => {
+                    match (*n as usize).checked_sub(1).filter(|i| *i < names.len()) {
+                        Some(i) => {
+                            index.insert(known, i);
+                            continue;
+                        }
+                        None => {
+                            let what = format!("no column number {n} (mapped to {known})");
+                            return fail(what, "correct `columns` in experiment.toml", &names);
+                        }
+                    }
                 }
-                (Some((i, _)), None) => {
-                    index.insert(known, i);
+                Some(ColumnRef::Name(name)) => name.as_str(),
+                None => known,
+            };
+            let exact = matches(&names, |n| n == wanted);
+            let found = if exact.is_empty() {
+                matches(&names, |n| n.to_lowercase() == wanted.to_lowercase())
+            } else {
+                exact
+            };
+            match found[..] {
+                [] if mapping.contains_key(known) => {
+                    let what = format!("column `{wanted}` (mapped to {known}) is missing");
+                    return fail(what, "correct `columns` in experiment.toml", &names);
                 }
-                (None, _) if mapping.contains_key(known) => {
-                    return fail(Problem::Columns {
-                        what: format!("column `{wanted}` (mapped to {known}) is missing"),
-                        remedy: "correct `columns` in experiment.toml".into(),
-                        seen: names,
-                    });
+                [] => {}
+                [one] => {
+                    index.insert(known, one);
                 }
-                (None, _) => {}
+                _ => {
+                    let what = format!("column `{wanted}` occurs twice");
+                    let remedy = format!(
+                        "rename one of them, or name it by its number: columns = {{{known} = {}}}",
+                        found[0] + 1
+                    );
+                    return fail(what, &remedy, &names);
+                }
             }
         }
         let used: Vec<usize> = index.values().copied().collect();
@@ -97,20 +182,35 @@ impl Columns {
         self.index.get(known).copied()
     }
 
+    /// Index of a column of the user's, used or not.
+    pub(crate) fn find(&self, column: &str, place: &Place) -> Result<usize, ReadError> {
+        match matches(&self.names, |n| n == column)[..] {
+            [one] => Ok(one),
+            _ => Err(ReadError {
+                place: place.clone(),
+                problem: Problem::Columns {
+                    seen: self.names.clone(),
+                    what: format!("`rows` names a column `{column}` that is not there once"),
+                    remedy: "correct `rows` in experiment.toml".into(),
+                },
+            }),
+        }
+    }
+
     /// Index of a column that must be there.
     pub(crate) fn require(&self, known: &'static str, place: &Place) -> Result<usize, ReadError> {
         self.get(known).ok_or_else(|| self.missing(known, place))
     }
 
-    /// The error for a column that must be there, with the nearest header as a proposal.
+    /// The error for a column that must be there, with the likeliest header as a proposal.
     pub(crate) fn missing(&self, known: &'static str, place: &Place) -> ReadError {
+        let wanted = role_of_known(known);
+        let similar = |n: &String| strsim::jaro_winkler(&n.to_lowercase(), known);
         let own = self
             .ignored
             .iter()
-            .max_by(|a, b| {
-                strsim::jaro_winkler(&a.to_lowercase(), known)
-                    .total_cmp(&strsim::jaro_winkler(&b.to_lowercase(), known))
-            })
+            .find(|n| wanted.is_some() && role(n) == wanted)
+            .or_else(|| self.ignored.iter().max_by(|a, b| similar(a).total_cmp(&similar(b))))
             .map_or("Your Header", String::as_str);
         ReadError {
             place: place.clone(),
@@ -128,4 +228,70 @@ impl Columns {
     pub(crate) fn name(&self, index: usize) -> &str {
         self.names.get(index).map_or("?", String::as_str)
     }
+
+    /// Refuses a header whose unit contradicts what experiment.toml says, or does not say.
+    pub(crate) fn check_units(
+        &self,
+        place: &Place,
+        dialect: &Dialect,
+        unit: &str,
+    ) -> Result<(), ReadError> {
+        for (known, index) in &self.index {
+            let name = self.name(*index);
+            let Some(seen) = split_unit(name).1 else { continue };
+            let Some(remedy) = contradiction(known, name, seen, dialect, unit) else { continue };
+            return Err(ReadError {
+                place: Place { column: Some(name.to_owned()), ..place.clone() },
+                problem: Problem::HeaderUnit { unit: seen.text(), remedy },
+            });
+        }
+        Ok(())
+    }
+}
+
+fn matches(names: &[String], fits: impl Fn(&String) -> bool) -> Vec<usize> {
+    names.iter().enumerate().filter(|(_, n)| fits(n)).map(|(i, _)| i).collect()
+}
+
+/// What to write where a header's unit is not the one that the column would be read in.
+fn contradiction(
+    known: &str,
+    header: &str,
+    seen: HeaderUnit,
+    dialect: &Dialect,
+    unit: &str,
+) -> Option<String> {
+    use HeaderUnit as U;
+    let angle = |u: AngleUnit| {
+        (dialect.angle_unit.is_none() && u != AngleUnit::Degrees)
+            .then(|| format!("write angle_unit = \"{}\" in [bench]", u.name()))
+    };
+    let time = |u: TimeUnit| {
+        (dialect.time_unit.is_none() && u != TimeUnit::Seconds)
+            .then(|| format!("write time_unit = \"{}\" in [csv]", u.name()))
+    };
+    match (known, seen) {
+        ("angle_deg", U::Gon) => angle(AngleUnit::Gon),
+        ("angle_deg", U::Radians) => angle(AngleUnit::Radians),
+        ("t_s", U::Milliseconds) => time(TimeUnit::Milliseconds),
+        ("t_s", U::Microseconds) => time(TimeUnit::Microseconds),
+        ("t_s", U::Nanoseconds) => time(TimeUnit::Nanoseconds),
+        ("code", u) => u.of_readings().map(|of| {
+            format!(
+                "codes are in LSB: write quantizer = \"none\" and unit = \"{of}\" in [output], and columns = {{output = \"{header}\"}}"
+            )
+        }),
+        ("output", u) => u.of_readings().filter(|of| !same_unit(of, unit)).map(|of| {
+            format!("[output] says unit = \"{unit}\": write unit = \"{of}\", with nominal_scale in m/s² per {of}")
+        }),
+        ("temperature_degc", U::Fahrenheit | U::Kelvin) => {
+            Some("temperatures are read in °C: convert the column, or leave it out of `columns`".into())
+        }
+        _ => None,
+    }
+}
+
+fn same_unit(a: &str, b: &str) -> bool {
+    let plain = |t: &str| t.replace('²', "2").replace('^', "").to_lowercase();
+    plain(a) == plain(b)
 }

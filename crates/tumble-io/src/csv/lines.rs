@@ -16,8 +16,12 @@ pub(crate) struct Lines<R> {
     buffer: Vec<u8>,
     start: usize,
     end: usize,
+    /// Where the line that was read last begins.
+    line_start: usize,
     number: u64,
     at_end: bool,
+    /// Beside `#`: what comments begin with.
+    comment: Vec<u8>,
 }
 
 impl<R: Read> Lines<R> {
@@ -28,9 +32,33 @@ impl<R: Read> Lines<R> {
             buffer: vec![0; CHUNK],
             start: 0,
             end: 0,
+            line_start: 0,
             number: 0,
             at_end: false,
+            comment: Vec::new(),
         }
+    }
+
+    /// Lines that begin so are comments, too.
+    pub(crate) fn with_comment(mut self, comment: &[u8]) -> Self {
+        self.comment = comment.to_vec();
+        self
+    }
+
+    /// The line of a number, whatever it holds; `None` where the file ends before it.
+    pub(crate) fn line(&mut self, wanted: u64) -> Result<Option<&[u8]>, ReadError> {
+        while self.number + 1 < wanted {
+            if self.advance()?.is_none() {
+                return Ok(None);
+            }
+        }
+        Ok(self.advance()?.map(|(from, to)| &self.buffer[from..to]))
+    }
+
+    /// Leaves out all lines before a number.
+    pub(crate) fn skip_to(&mut self, first: u64) -> Result<(), ReadError> {
+        while self.number + 1 < first && self.advance()?.is_some() {}
+        Ok(())
     }
 
     pub(crate) fn shown_as(&self) -> &str {
@@ -51,12 +79,20 @@ impl<R: Read> Lines<R> {
                 Some(b) if b.is_ascii_whitespace() => {
                     self.buffer[from..to].iter().any(|b| !b.is_ascii_whitespace())
                 }
-                Some(_) => true,
+                Some(_) => {
+                    self.comment.is_empty() || !self.buffer[from..to].starts_with(&self.comment)
+                }
             };
             if data {
                 return Ok(Some((self.number, &self.buffer[from..to])));
             }
         }
+    }
+
+    /// The line that was read last will be read again.
+    pub(crate) fn put_back(&mut self) {
+        self.start = self.line_start;
+        self.number -= 1;
     }
 
     /// Finds the next line in the buffer, reading on as needed.
@@ -88,6 +124,7 @@ impl<R: Read> Lines<R> {
     #[inline]
     fn finish_line(&mut self, mut from: usize, mut to: usize) -> (usize, usize) {
         self.number += 1;
+        self.line_start = from;
         if to > from && self.buffer[to - 1] == b'\r' {
             to -= 1;
         }

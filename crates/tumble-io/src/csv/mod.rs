@@ -4,13 +4,24 @@
 //! understood is refused with file, line, column and remedy; nothing is guessed.
 
 mod averaged;
+mod clock;
+mod continuous;
+mod dial;
+mod dialect;
 mod header;
 mod lines;
 mod number;
 mod raw;
+mod roles;
 mod row;
 mod run_file;
+mod sketch;
 mod stream;
 
-pub(crate) use run_file::{Dwell, RunFileOptions, read_run_file};
+pub(crate) use clock::TimeUnit;
+pub(crate) use dial::AngleUnit;
+pub(crate) use dialect::{Delimiter, Dialect, Missing};
+pub(crate) use header::{KNOWN, Mapping};
+pub(crate) use number::{CodeFormat, DecimalSign};
+pub(crate) use run_file::{Discard, Dwell, RunFileOptions, read_run_file};
 pub use stream::{CodeStream, CodeStreamError, Reading};

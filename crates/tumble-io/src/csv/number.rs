@@ -9,6 +9,71 @@ pub(crate) enum DecimalSign {
     CommaOrPoint,
 }
 
+/// How codes are written.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) struct CodeFormat {
+    /// `1F`, `0x1F` or `1Fh` instead of decimal digits.
+    pub(crate) hexadecimal: bool,
+    /// The codes are words of so many bits in two's complement, written without their sign: 65535 is −1 in 16.
+    pub(crate) bits: Option<u32>,
+}
+
+impl CodeFormat {
+    /// Whether codes are plain decimal numbers with their sign.
+    #[inline]
+    pub(crate) fn is_plain(self) -> bool {
+        !self.hexadecimal && self.bits.is_none()
+    }
+
+    /// A code as it is written.
+    pub(crate) fn code(self, field: &[u8]) -> Option<i32> {
+        let field = trimmed(field);
+        let value = if self.hexadecimal { hexadecimal(field)? } else { wide(field)? };
+        let signed = match self.bits {
+            None => value,
+            Some(bits) => {
+                let span = 1i64 << bits;
+                if !(0..span).contains(&value) {
+                    return None;
+                }
+                if value >= span / 2 { value - span } else { value }
+            }
+        };
+        i32::try_from(signed).ok()
+    }
+}
+
+/// An unsigned or signed whole number of up to ten digits.
+fn wide(field: &[u8]) -> Option<i64> {
+    match integer(field) {
+        Some(n) => Some(i64::from(n)),
+        // 32-bit words without their sign do not fit into a signed one.
+        None => std::str::from_utf8(field).ok()?.parse::<u32>().ok().map(i64::from),
+    }
+}
+
+/// `1F`, `0x1F`, `1Fh`, at most eight digits.
+fn hexadecimal(field: &[u8]) -> Option<i64> {
+    let text = std::str::from_utf8(field).ok()?;
+    let digits = text
+        .strip_prefix("0x")
+        .or_else(|| text.strip_prefix("0X"))
+        .or_else(|| text.strip_suffix(['h', 'H']))
+        .unwrap_or(text);
+    let fits = (1..=8).contains(&digits.len()) && digits.bytes().all(|b| b.is_ascii_hexdigit());
+    fits.then(|| i64::from_str_radix(digits, 16).ok()).flatten()
+}
+
+/// Texts that loggers and spreadsheets write where there is no reading.
+pub(crate) fn says_missing(field: &[u8]) -> bool {
+    const WORDS: [&str; 14] = [
+        "", "nan", "na", "n/a", "null", "none", "-", "--", "---", "?", "#n/a", "#nan", "inf",
+        "-inf",
+    ];
+    let field = trimmed(field);
+    field.len() <= 8 && WORDS.iter().any(|w| field.eq_ignore_ascii_case(w.as_bytes()))
+}
+
 /// A field without blanks around it and without plain quotes.
 pub(crate) fn trimmed(field: &[u8]) -> &[u8] {
     let field = field.trim_ascii();
@@ -51,6 +116,13 @@ pub(crate) fn integer(field: &[u8]) -> Option<i32> {
 
 /// A finite real number.
 pub(crate) fn real(field: &[u8], sign: DecimalSign) -> Option<f64> {
+    // The minus sign of typeset text is no other number.
+    if let Some(rest) = field.strip_prefix("−".as_bytes()) {
+        return match rest.first() {
+            Some(b'0'..=b'9' | b'.' | b',') => real(rest, sign).map(|v| -v),
+            _ => None,
+        };
+    }
     let plain = |text: &[u8]| {
         // `str::parse` also takes "inf", "nan" and "infinity".
         let numeric =
@@ -109,6 +181,32 @@ mod tests {
             assert_eq!(real(wrong.as_bytes(), DecimalSign::CommaOrPoint), None, "{wrong}");
         }
         assert_eq!(real(b"1,5", DecimalSign::Point), None);
+        assert_eq!(real("−1.5".as_bytes(), DecimalSign::Point), Some(-1.5));
+        assert_eq!(real("−−1.5".as_bytes(), DecimalSign::Point), None);
+    }
+
+    #[test]
+    fn words_without_their_sign() {
+        let hex = CodeFormat { hexadecimal: true, bits: Some(16) };
+        assert_eq!(hex.code(b"FFFF"), Some(-1));
+        assert_eq!(hex.code(b"0x7fff"), Some(32767));
+        assert_eq!(hex.code(b"8000h"), Some(-32768));
+        assert_eq!(hex.code(b"10000"), None);
+        let word = CodeFormat { hexadecimal: false, bits: Some(16) };
+        assert_eq!(word.code(b"65535"), Some(-1));
+        assert_eq!(word.code(b"-1"), None);
+        assert_eq!(word.code(b"65536"), None);
+        let long = CodeFormat { hexadecimal: false, bits: Some(32) };
+        assert_eq!(long.code(b"4294967295"), Some(-1));
+        assert_eq!(CodeFormat { hexadecimal: true, bits: None }.code(b"-1F"), None);
+    }
+
+    #[test]
+    fn missing_readings() {
+        for word in ["", "NaN", " n/a ", "\"\"", "#N/A", "-"] {
+            assert!(says_missing(word.as_bytes()), "{word}");
+        }
+        assert!(!says_missing(b"0") && !says_missing(b"error"));
     }
 
     #[test]

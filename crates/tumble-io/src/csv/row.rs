@@ -1,7 +1,10 @@
 //! One row: its fields, and how to complain about them.
 
+use super::clock::{TimeUnit, date_s};
+use super::dial::{AngleUnit, dms};
+use super::dialect::{Delimiter, Dialect};
 use super::header::Columns;
-use super::number::{real, trimmed};
+use super::number::{CodeFormat, DecimalSign, integer, real, says_missing, trimmed};
 use crate::error::{Place, Problem, ReadError};
 
 /// The places of a line's fields, kept from line to line so that nothing is allocated in the loop.
@@ -19,8 +22,12 @@ pub(super) struct Fields<'a> {
 impl FieldBuffer {
     /// Splits a line; a field in quotes may hold the delimiter.
     #[inline]
-    pub(super) fn split<'a>(&'a mut self, line: &'a [u8], delimiter: u8) -> Fields<'a> {
+    pub(super) fn split<'a>(&'a mut self, line: &'a [u8], delimiter: Delimiter) -> Fields<'a> {
         self.ends.clear();
+        let Delimiter::Byte(delimiter) = delimiter else {
+            self.split_at_blanks(line);
+            return Fields { line, ends: &self.ends };
+        };
         let mut start = 0;
         if memchr::memchr(b'"', line).is_none() {
             for end in memchr::memchr_iter(delimiter, line) {
@@ -42,6 +49,23 @@ impl FieldBuffer {
         self.ends.push((start, line.len()));
         Fields { line, ends: &self.ends }
     }
+
+    fn split_at_blanks(&mut self, line: &[u8]) {
+        let mut start = None;
+        for (i, b) in line.iter().enumerate() {
+            match (start, b.is_ascii_whitespace()) {
+                (None, false) => start = Some(i),
+                (Some(from), true) => {
+                    self.ends.push((from, i));
+                    start = None;
+                }
+                _ => {}
+            }
+        }
+        if let Some(from) = start {
+            self.ends.push((from, line.len()));
+        }
+    }
 }
 
 impl<'a> Fields<'a> {
@@ -53,6 +77,26 @@ impl<'a> Fields<'a> {
     #[inline]
     pub(super) fn get(&self, index: usize) -> &'a [u8] {
         self.ends.get(index).map_or(&[], |(a, b)| &self.line[*a..*b])
+    }
+}
+
+const DECIMAL_COMMA: &str = "write a decimal point, and no thousands marks; where all numbers have decimal commas, decimal = \",\" in [csv]";
+const MISSING: &str = "fill in the cell or remove the row; missing = \"skip\" in [csv] leaves rows without a reading out";
+
+/// What to do about a code that is none.
+fn code_remedy(text: &[u8], format: CodeFormat) -> &'static str {
+    let hex = CodeFormat { hexadecimal: true, bits: None };
+    match text {
+        t if says_missing(t) => MISSING,
+        t if format.bits.is_some() && format.code(t).is_none() && integer(t).is_some() => {
+            "correct code_bits in [csv], or remove it where codes carry their sign"
+        }
+        t if !format.hexadecimal && hex.code(t).is_some() => {
+            "write code_format = \"hex\" in [csv], and code_bits = 16 where the words are 16 bits with a sign"
+        }
+        _ => {
+            "codes are whole LSB; volts, g or m/s² go into a column `output` with quantizer = \"none\", averages into `mean_code`"
+        }
     }
 }
 
@@ -76,15 +120,83 @@ impl Row<'_> {
         if seen == expected {
             return Ok(());
         }
-        Err(ReadError { place: self.place(), problem: Problem::Fields { seen, expected } })
+        // Separators at the end of a row hold nothing.
+        if seen > expected && (expected..seen).all(|i| trimmed(self.fields.get(i)).is_empty()) {
+            return Ok(());
+        }
+        Err(ReadError {
+            place: self.place(),
+            problem: Problem::Fields { seen, expected, delimiter: self.columns.delimiter.name() },
+        })
+    }
+
+    /// A field without blanks and quotes around it.
+    pub(super) fn text(&self, index: usize) -> &[u8] {
+        trimmed(self.fields.get(index))
+    }
+
+    /// A code, as `[csv]` says that codes are written.
+    #[inline]
+    pub(super) fn code(&self, index: usize, format: CodeFormat) -> Result<i32, ReadError> {
+        let field = self.fields.get(index);
+        let plain = if format.is_plain() { integer(field) } else { None };
+        plain
+            .or_else(
+                || if format.is_plain() { integer(trimmed(field)) } else { format.code(field) },
+            )
+            .ok_or_else(|| {
+                let expected = match format.bits {
+                    Some(_) => "a code of so many bits as code_bits says, without a sign",
+                    None => "an integer code",
+                };
+                self.wrong(index, expected, code_remedy(trimmed(field), format))
+            })
+    }
+
+    /// A reading of the dial, in the dial's own unit.
+    pub(super) fn dial(&self, index: usize, dialect: &Dialect) -> Result<f64, ReadError> {
+        let unit = dialect.angle_unit.unwrap_or_default();
+        let text = self.text(index);
+        unit.value(text, self.columns.decimal).ok_or_else(|| {
+            let remedy = match text {
+                [] => "fill in the empty cell (the angle stands in every row), or remove the row",
+                t if unit != AngleUnit::DegreesMinutesSeconds && dms(t, DecimalSign::CommaOrPoint).is_some() => {
+                    "write angle_unit = \"dms\" in [bench] where these are degrees, minutes and seconds"
+                }
+                t if t.contains(&b',') => DECIMAL_COMMA,
+                _ => "mend or remove the row",
+            };
+            self.wrong(index, unit.expected(), remedy)
+        })
+    }
+
+    /// A time, s.
+    #[inline]
+    pub(super) fn time_s(&self, index: usize, dialect: &Dialect) -> Result<f64, ReadError> {
+        let unit = dialect.time_unit.unwrap_or_default();
+        let text = self.text(index);
+        unit.seconds(text, self.columns.decimal).ok_or_else(|| {
+            let remedy = match text {
+                [] => "fill in the empty cell, remove the row, or leave the time out of `columns`",
+                t if unit != TimeUnit::Date && date_s(t).is_some() => {
+                    "write time_unit = \"date\" in [csv] where these are dates or times of day"
+                }
+                t if t.contains(&b',') => DECIMAL_COMMA,
+                t if t.contains(&b'/') => {
+                    "write dates as 2026-11-20T10:15:30: 11/20 and 20/11 cannot be told apart"
+                }
+                _ => "mend or remove the row",
+            };
+            self.wrong(index, unit.expected(), remedy)
+        })
     }
 
     pub(super) fn real(&self, index: usize, expected: &'static str) -> Result<f64, ReadError> {
-        let text = trimmed(self.fields.get(index));
+        let text = self.text(index);
         real(text, self.columns.decimal).ok_or_else(|| {
             let remedy = match text {
-                [] => "fill in the empty cell or remove the row",
-                t if t.contains(&b',') => "write a decimal point, and no thousands marks",
+                t if says_missing(t) => MISSING,
+                t if t.contains(&b',') => DECIMAL_COMMA,
                 _ => "mend or remove the row",
             };
             self.wrong(index, expected, remedy)

@@ -1,42 +1,72 @@
-//! A run file: raw or averaged, by its columns.
+//! A run file: raw, averaged or continuous, by its columns and by what experiment.toml says.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use tumble_core::{Quantizer, Readings};
+use tumble_core::{Quantizer, Readings, Record};
 
-use super::header::Columns;
+use super::dial::AngleUnit;
+use super::dialect::{Delimiter, Dialect, Missing};
+use super::header::{Columns, Mapping};
 use super::lines::Lines;
-use super::{averaged, raw};
+use super::row::FieldBuffer;
+use super::{averaged, continuous, raw, sketch};
 use crate::error::{Place, Problem, ReadError};
-use crate::source::Source;
+use crate::source::{Source, Watch};
+
+/// Start of each dwell that is thrown away.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Discard {
+    /// So many seconds.
+    Seconds(f64),
+    /// Until the readings stand still; motion at the end, too.
+    Detected,
+}
 
 /// How a run file is to be read.
 #[derive(Debug, Clone)]
 pub(crate) struct RunFileOptions<'a> {
-    /// Known column → the user's header.
-    pub(crate) mapping: &'a BTreeMap<String, String>,
+    /// Known column → the user's.
+    pub(crate) mapping: &'a Mapping,
+    /// Only rows whose columns hold these texts.
+    pub(crate) rows: &'a BTreeMap<String, String>,
+    /// How the file is written.
+    pub(crate) dialect: &'a Dialect,
     /// The whole file is one dwell at this dial angle.
     pub(crate) fixed_angle_deg: Option<f64>,
-    /// Start of each dwell that is thrown away, s.
-    pub(crate) discard_s: f64,
+    /// The file is a continuous record; its dwells stand at these readings of the dial.
+    pub(crate) angles_deg: Option<&'a [f64]>,
+    /// Start of each dwell that is thrown away.
+    pub(crate) discard: Discard,
     /// Samples per second, where no time is recorded.
     pub(crate) rate_hz: Option<f64>,
     /// The converter.
     pub(crate) quantizer: Quantizer,
+    /// Unit of real readings.
+    pub(crate) unit: &'a str,
+    /// Told how far reading has come.
+    pub(crate) watch: &'a dyn Watch,
+}
+
+impl RunFileOptions<'_> {
+    pub(super) fn angle_unit(&self) -> AngleUnit {
+        self.dialect.angle_unit.unwrap_or_default()
+    }
+
+    pub(super) fn skips_missing(&self) -> bool {
+        self.dialect.missing == Missing::Skip
+    }
 }
 
 /// One dwell as read.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Dwell {
-    /// Angle as the dial shows it, degrees.
-    pub(crate) dial_deg: f64,
     /// What was read.
     pub(crate) readings: Readings,
     /// Mean temperature.
     pub(crate) temperature_degc: Option<f64>,
-    /// First line.
-    pub(crate) line: u64,
+    /// Place, times, the dial.
+    pub(crate) record: Record,
 }
 
 /// A run file as read.
@@ -56,44 +86,121 @@ pub(crate) fn read_run_file(
     shown_as: &str,
     options: &RunFileOptions<'_>,
 ) -> Result<RunFile, ReadError> {
-    let mut lines = Lines::new(Source::open(path, shown_as)?, shown_as);
-    let (number, header) = match lines.next_data()? {
-        Some((number, line)) => (number, line.to_vec()),
-        None => {
-            let what = "the file is empty; it needs a header line such as `angle_deg,code`";
-            return Err(ReadError {
-                place: Place::file(shown_as),
-                problem: Problem::Empty { what },
-            });
-        }
-    };
-    let place = Place::line(shown_as, number);
-    let columns = Columns::parse(&header, &place, options.mapping)?;
-    if options.fixed_angle_deg.is_some() && columns.get("angle_deg").is_some() {
+    let source = Source::open(path, shown_as)?.watched(options.watch);
+    let mut lines = Lines::new(source, shown_as).with_comment(&options.dialect.comment);
+    let read = read_lines(&mut lines, options);
+    // What goes wrong at the header is often a header that stands elsewhere: a look at the file may tell where.
+    let (dwells, ignored) = read.map_err(|e| sketch::with_advice(e, path, options))?;
+    let sha256 = lines
+        .into_inner()
+        .finish()
+        .map_err(|e| ReadError { place: Place::file(shown_as), problem: Source::problem(e) })?;
+    Ok(RunFile { dwells, ignored, sha256 })
+}
+
+fn read_lines<R: std::io::Read>(
+    lines: &mut Lines<R>,
+    options: &RunFileOptions<'_>,
+) -> Result<(Vec<Dwell>, Vec<String>), ReadError> {
+    let (place, columns) = header(lines, options)?;
+    columns.check_units(&place, options.dialect, options.unit)?;
+    let has_angle = columns.get("angle_deg").is_some();
+    if has_angle && (options.fixed_angle_deg.is_some() || options.angles_deg.is_some()) {
+        let remedy = match options.angles_deg {
+            Some(_) => "drop `angles_deg`, or the column from `columns`",
+            None => "use `file = …` instead of `files = [{file, angle_deg}]`, or drop the column",
+        };
         return Err(ReadError {
             place,
             problem: Problem::Columns {
                 seen: columns.names,
-                what: "the file has angles, and experiment.toml gives one for the whole file"
-                    .into(),
-                remedy:
-                    "use `file = …` instead of `files = [{file, angle_deg}]`, or drop the column"
-                        .into(),
+                what: "the file has angles, and experiment.toml gives them, too".into(),
+                remedy: remedy.into(),
             },
         });
     }
     let dwells = if columns.get("mean_code").is_some() {
-        averaged::read(&mut lines, &place, &columns, options)?
+        averaged::read(lines, &place, &columns, options)?
+    } else if let Some(angles) = options.angles_deg {
+        continuous::read(lines, &place, &columns, options, angles)?
     } else {
-        raw::read(&mut lines, &place, &columns, options)?
+        raw::read(lines, &place, &columns, options)?
     };
     if dwells.is_empty() {
-        let what = "no rows under the header";
+        let what = if options.rows.is_empty() {
+            "no rows under the header"
+        } else {
+            "no row holds what `rows` asks for; correct `rows` in experiment.toml"
+        };
         return Err(ReadError { place, problem: Problem::Empty { what } });
     }
-    let sha256 = lines
-        .into_inner()
-        .finish()
-        .map_err(|e| ReadError { place: Place::file(shown_as), problem: Problem::Io(e) })?;
-    Ok(RunFile { dwells, ignored: columns.ignored, sha256 })
+    Ok((dwells, columns.ignored))
+}
+
+/// Reads the header, and goes on to the first line of data.
+fn header<R: std::io::Read>(
+    lines: &mut Lines<R>,
+    options: &RunFileOptions<'_>,
+) -> Result<(Place, Columns), ReadError> {
+    let dialect = options.dialect;
+    let shown_as = lines.shown_as().to_owned();
+    let empty = || ReadError {
+        place: Place::file(shown_as.as_str()),
+        problem: Problem::Empty {
+            what: "the file is empty; it needs a header line such as `angle_deg,code`",
+        },
+    };
+    let (number, text) = match dialect.header_line {
+        None => match lines.next_data()? {
+            Some((number, line)) => (number, line.to_vec()),
+            None => return Err(empty()),
+        },
+        Some(0) => {
+            // The first row is data: its width is looked at and it is read again.
+            lines.skip_to(dialect.data_line.unwrap_or(1))?;
+            let Some((number, line)) = lines.next_data()? else { return Err(empty()) };
+            let delimiter = dialect.delimiter.unwrap_or(Delimiter::Byte(b','));
+            let width = FieldBuffer::default().split(line, delimiter).len();
+            lines.put_back();
+            let place = Place::line(shown_as.as_str(), number);
+            let columns = Columns::numbered(width, &place, dialect, options.mapping)?;
+            return Ok((place, columns));
+        }
+        Some(number) => match lines.line(number)? {
+            Some(line) => {
+                // A header may stand in a comment.
+                let mark = |b: &u8| *b == b'#' || options.dialect.comment.contains(b);
+                let start = line.iter().position(|b| !mark(b)).unwrap_or(line.len());
+                (number, line[start..].to_vec())
+            }
+            None => {
+                return Err(ReadError {
+                    place: Place::line(shown_as.as_str(), number),
+                    problem: Problem::Empty {
+                        what: "the file ends before its header; correct header_line in [csv]",
+                    },
+                });
+            }
+        },
+    };
+    let mut place = Place::line(shown_as.as_str(), number);
+    // Spreadsheets write the separator into a first line of its own: `sep=;`.
+    let announced = text
+        .strip_prefix(b"sep=")
+        .or_else(|| text.strip_prefix(b"SEP="))
+        .filter(|rest| rest.len() == 1 && dialect.header_line.is_none());
+    let columns = match announced {
+        Some(separator) => {
+            let stated =
+                Dialect { delimiter: Some(Delimiter::Byte(separator[0])), ..dialect.clone() };
+            let Some((number, line)) = lines.next_data()? else { return Err(empty()) };
+            place = Place::line(shown_as.as_str(), number);
+            Columns::parse(line, &place, &stated, options.mapping)?
+        }
+        None => Columns::parse(&text, &place, dialect, options.mapping)?,
+    };
+    if let Some(first) = dialect.data_line {
+        lines.skip_to(first)?;
+    }
+    Ok((place, columns))
 }

@@ -1,9 +1,9 @@
 //! A stream of codes for `compensate`: with a header or without, from a file or standard input.
 
-use std::collections::BTreeMap;
 use std::io::Read;
 
-use super::header::Columns;
+use super::dialect::Dialect;
+use super::header::{Columns, Mapping};
 use super::lines::Lines;
 use super::number::{DecimalSign, integer, real, trimmed};
 use super::row::{FieldBuffer, Row};
@@ -48,7 +48,7 @@ impl<R: Read> CodeStream<R> {
             return Ok(stream);
         }
         let place = Place::line(shown_as, number);
-        let columns = Columns::parse(&line, &place, &BTreeMap::new())?;
+        let columns = Columns::parse(&line, &place, &Dialect::default(), &Mapping::new())?;
         let wanted = if whole_codes { "code" } else { "output" };
         let Some(reading) = columns.get(wanted) else {
             return Err(ReadError {

@@ -6,14 +6,17 @@ use std::path::{Component, Path, PathBuf};
 use std::thread;
 
 use tumble_core::{
-    Angle, Bench, Dial, Experiment, Finding, FindingKind, Output, Position, Readings, Record, Run,
-    Seat, Sensor, VerticalPair,
+    Angle, Bench, Experiment, Finding, FindingKind, Output, Position, Readings, Record, Run, Seat,
+    Sensor, VerticalPair,
 };
 
-use crate::csv::{Dwell, RunFileOptions, read_run_file};
+use crate::csv::{Dialect, Discard, Dwell, Mapping, RunFileOptions, read_run_file};
 use crate::error::{Place, Problem, ReadError};
-use crate::experiment_file::{self, BenchTable, Orientation, RunTable, ScaleTable};
-use settings::{bench, missing, not_negative, output, targets, value};
+use crate::experiment_file::{
+    self, BenchTable, CsvTable, DiscardValue, Orientation, RunTable, ScaleTable,
+};
+use crate::source::Watch;
+use settings::{bench, dialect, discard, mapping, missing, output, targets, value};
 
 /// Name of the file that makes a folder an experiment.
 const EXPERIMENT_FILE: &str = "experiment.toml";
@@ -57,7 +60,7 @@ pub struct RunRemark {
 ///
 /// **Errors** [`ReadError`] with file, line, column and remedy for everything that is not understood. Degenerate
 /// data are no error here.
-pub fn read_experiment(folder: &Path) -> Result<ExperimentFolder, ReadError> {
+pub fn read_experiment(folder: &Path, watch: &dyn Watch) -> Result<ExperimentFolder, ReadError> {
     let toml_path = folder.join(EXPERIMENT_FILE);
     let bytes = std::fs::read(&toml_path).map_err(|e| match e.kind() {
         std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory => ReadError {
@@ -81,7 +84,16 @@ pub fn read_experiment(folder: &Path) -> Result<ExperimentFolder, ReadError> {
         vec![FileDigest { file: EXPERIMENT_FILE.into(), sha256: crate::digest::sha256(&bytes) }];
     let mut findings = Vec::new();
 
-    let reader = Reader { folder, output: &output, bench: &bench, table: &file.bench };
+    let dialect = dialect(&file.csv, &file.bench)?;
+    let reader = Reader {
+        folder,
+        output: &output,
+        bench: &bench,
+        table: &file.bench,
+        csv: &file.csv,
+        dialect: &dialect,
+        watch,
+    };
     let vertical = match &file.scale {
         Some(scale) => Some(reader.vertical(scale, &names, &mut inputs, &mut findings)?),
         None => None,
@@ -152,7 +164,11 @@ fn run_names(runs: &[RunTable]) -> Result<Vec<String>, ReadError> {
 /// `data/run-1.csv.gz` → `run-1`.
 fn stem(file: &str) -> String {
     let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
-    name.trim_end_matches(".gz").trim_end_matches(".csv").trim_end_matches(".txt").to_owned()
+    name.trim_end_matches(".gz")
+        .trim_end_matches(".zst")
+        .trim_end_matches(".csv")
+        .trim_end_matches(".txt")
+        .to_owned()
 }
 
 type ReadRun = Result<(Run, Vec<FileDigest>, Vec<Finding>), ReadError>;
@@ -162,6 +178,17 @@ struct Reader<'a> {
     output: &'a Output,
     bench: &'a Bench,
     table: &'a BenchTable,
+    csv: &'a CsvTable,
+    dialect: &'a Dialect,
+    watch: &'a dyn Watch,
+}
+
+/// What a table of runs or of the up/down pair says about its files.
+struct Asked<'a> {
+    mapping: Mapping,
+    rows: std::collections::BTreeMap<String, String>,
+    discard: Discard,
+    angles_deg: Option<&'a [f64]>,
 }
 
 impl Reader<'_> {
@@ -224,8 +251,17 @@ impl Reader<'_> {
                 return Err(value("[[run]] files", "given beside file", "one of the two"));
             }
         };
+        let asked = self.asked(
+            &table.columns,
+            &table.rows,
+            table.discard_s.as_ref(),
+            table.angles_deg.as_deref(),
+        )?;
+        if asked.angles_deg.is_some() && files.len() != 1 {
+            return Err(value("[[run]] angles_deg", "given beside files", "one of the two"));
+        }
         for (file, fixed_angle_deg) in files {
-            let options = self.options(&table.columns, fixed_angle_deg, table.discard_s)?;
+            let options = self.options(&asked, fixed_angle_deg);
             let read = read_run_file(&self.inside(file)?, file, &options)?;
             digests.push(FileDigest { file: file.to_owned(), sha256: read.sha256 });
             if !read.ignored.is_empty() {
@@ -249,19 +285,48 @@ impl Reader<'_> {
         Ok((run, digests, findings))
     }
 
-    fn options<'b>(
+    /// What one table asks for, put over what `[csv]` says for all files.
+    fn asked<'b>(
         &self,
-        mapping: &'b std::collections::BTreeMap<String, String>,
+        columns: &Mapping,
+        rows: &std::collections::BTreeMap<String, String>,
+        discarded: Option<&DiscardValue>,
+        angles_deg: Option<&'b [f64]>,
+    ) -> Result<Asked<'b>, ReadError> {
+        if let Some(infinite) = angles_deg.into_iter().flatten().find(|a| a.is_infinite()) {
+            return Err(value(
+                "[[run]] angles_deg",
+                infinite,
+                "angles, or nan for a dwell that does not count",
+            ));
+        }
+        let mut all_rows = self.csv.rows.clone();
+        all_rows.extend(rows.clone());
+        Ok(Asked {
+            mapping: mapping(&self.csv.columns, columns)?,
+            rows: all_rows,
+            discard: discard(discarded)?,
+            angles_deg,
+        })
+    }
+
+    fn options<'b>(
+        &'b self,
+        asked: &'b Asked<'_>,
         fixed_angle_deg: Option<f64>,
-        discard_s: Option<f64>,
-    ) -> Result<RunFileOptions<'b>, ReadError> {
-        Ok(RunFileOptions {
-            mapping,
+    ) -> RunFileOptions<'b> {
+        RunFileOptions {
+            mapping: &asked.mapping,
+            rows: &asked.rows,
+            dialect: self.dialect,
             fixed_angle_deg,
-            discard_s: not_negative("discard_s", discard_s, "seconds")?.unwrap_or(0.0),
+            angles_deg: asked.angles_deg,
+            discard: asked.discard,
             rate_hz: self.output.rate_hz,
             quantizer: self.output.quantizer,
-        })
+            unit: &self.output.unit,
+            watch: self.watch,
+        }
     }
 
     /// A dwell at its angle: the dial's zero and sign, then the run's orientation.
@@ -272,7 +337,14 @@ impl Reader<'_> {
             Orientation::Normal => 1.0,
             Orientation::Reversed => -1.0,
         };
-        let angle = Angle::from_deg(turned * sign * (dwell.dial_deg - zero));
+        let mut record = dwell.record;
+        let dial_deg = record.dial.as_ref().map_or(0.0, |d| d.value * d.unit_deg);
+        if let Some(dial) = &mut record.dial {
+            dial.direction = turned * sign;
+        }
+        // 330° and −30° are one angle; the table's range and ±90° are told in the second.
+        let angle_deg = half_turn(turned * sign * (dial_deg - zero));
+        let angle = Angle::from_deg(angle_deg);
         Position {
             angle,
             seat: self.bench.seat(angle),
@@ -280,21 +352,11 @@ impl Reader<'_> {
             temperature_degc: dwell.temperature_degc.or(table.temperature_degc),
             place: format!(
                 "{file}, line {}, dwell {} ({}°)",
-                dwell.line,
+                record.line.unwrap_or(1),
                 index + 1,
-                dwell.dial_deg
+                tidy(dial_deg)
             ),
-            record: Record {
-                file: file.to_owned(),
-                line: Some(dwell.line),
-                dial: Some(Dial {
-                    typed: dwell.dial_deg.to_string(),
-                    value: dwell.dial_deg,
-                    unit_deg: 1.0,
-                    direction: turned * sign,
-                }),
-                ..Record::default()
-            },
+            record,
         }
     }
 
@@ -311,6 +373,7 @@ impl Reader<'_> {
                 problem: Problem::RunName { name: run.clone(), known: names.to_vec() },
             });
         }
+        let asked = self.asked(&scale.columns, &scale.rows, scale.discard_s.as_ref(), None)?;
         let mut dwell = |seat: Seat| {
             let (key, file, mean, samples, std) = match seat {
                 Seat::Down => (
@@ -328,10 +391,10 @@ impl Reader<'_> {
                     scale.up_std_code,
                 ),
             };
-            let (readings, temperature_degc, place) = match (file, mean) {
+            let (readings, temperature_degc, place, record) = match (file, mean) {
                 (Some(file), None) => {
                     let angle = if seat == Seat::Down { -90.0 } else { 90.0 };
-                    let options = self.options(&scale.columns, Some(angle), scale.discard_s)?;
+                    let options = self.options(&asked, Some(angle));
                     let read = read_run_file(&self.inside(file)?, file, &options)?;
                     inputs.push(FileDigest { file: file.clone(), sha256: read.sha256 });
                     if !read.ignored.is_empty() {
@@ -339,14 +402,14 @@ impl Reader<'_> {
                     }
                     let mut dwells = read.dwells.into_iter();
                     match (dwells.next(), dwells.next()) {
-                        (Some(d), None) => (d.readings, d.temperature_degc, file.clone()),
+                        (Some(d), None) => (d.readings, d.temperature_degc, file.clone(), d.record),
                         _ => return Err(value(key, file, "a file with one dwell")),
                     }
                 }
                 (None, Some(mean)) if mean.is_finite() => {
                     let readings =
                         Readings::Averaged { mean, samples: samples.unwrap_or(1).max(1), std };
-                    (readings, None, key.to_owned())
+                    (readings, None, key.to_owned(), Record::default())
                 }
                 (None, None) => {
                     return Err(missing(
@@ -357,11 +420,24 @@ impl Reader<'_> {
                 (_, Some(mean)) => return Err(value(key, mean, "a file or a mean code, not both")),
             };
             let angle = Angle::from_deg(if seat == Seat::Down { -90.0 } else { 90.0 });
-            let record = Record { file: place.clone(), ..Record::default() };
             Ok(Position { angle, seat, readings, temperature_degc, place, record })
         };
         Ok(VerticalPair { up: dwell(Seat::Up)?, down: dwell(Seat::Down)?, run: scale.run.clone() })
     }
+}
+
+/// An angle between −180° (exclusive) and 180°.
+fn half_turn(deg: f64) -> f64 {
+    if deg > -180.0 && deg <= 180.0 {
+        return deg;
+    }
+    let turned = deg.rem_euclid(360.0);
+    if turned > 180.0 { turned - 360.0 } else { turned }
+}
+
+/// Degrees for people: minutes and gon make endless decimals.
+fn tidy(deg: f64) -> f64 {
+    (deg * 1e6).round() / 1e6
 }
 
 fn ignored_columns(file: &str, columns: &[String]) -> Finding {

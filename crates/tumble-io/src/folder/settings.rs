@@ -6,8 +6,14 @@ use tumble_core::{
 };
 
 use super::EXPERIMENT_FILE;
+use crate::csv::{
+    AngleUnit, CodeFormat, DecimalSign, Delimiter, Dialect, Discard, KNOWN, Mapping, Missing,
+    TimeUnit,
+};
 use crate::error::{Place, Problem, ReadError};
-use crate::experiment_file::{BenchTable, ExperimentFile, OutputTable, QuantizerName};
+use crate::experiment_file::{
+    BenchTable, CsvTable, DiscardValue, ExperimentFile, OutputTable, QuantizerName,
+};
 
 pub(super) fn value(key: &str, given: impl ToString, expected: &str) -> ReadError {
     ReadError {
@@ -25,11 +31,7 @@ pub(super) fn missing(key: &'static str, example: &'static str) -> ReadError {
 }
 
 /// A number that must be finite and at least (or more than) zero.
-pub(super) fn not_negative(
-    key: &str,
-    given: Option<f64>,
-    expected: &str,
-) -> Result<Option<f64>, ReadError> {
+fn not_negative(key: &str, given: Option<f64>, expected: &str) -> Result<Option<f64>, ReadError> {
     match given {
         Some(v) if !(v.is_finite() && v >= 0.0) => Err(value(key, v, expected)),
         other => Ok(other),
@@ -183,4 +185,88 @@ pub(super) fn targets(file: &ExperimentFile) -> Result<Targets, ReadError> {
         )?,
         scale_error: or("[spec] target_scale_error", spec.target_scale_error, default.scale_error)?,
     })
+}
+
+/// How the run files are written: `[csv]`, and the unit of the dial.
+pub(super) fn dialect(csv: &CsvTable, bench: &BenchTable) -> Result<Dialect, ReadError> {
+    let decimal = match csv.decimal.as_deref() {
+        None => None,
+        Some(".") => Some(DecimalSign::Point),
+        Some(",") => Some(DecimalSign::CommaOrPoint),
+        Some(other) => return Err(value("[csv] decimal", other, "\".\" or \",\"")),
+    };
+    let delimiter = match csv.delimiter.as_deref() {
+        None => None,
+        Some(name) => Some(Delimiter::named(name).ok_or_else(|| {
+            value("[csv] delimiter", name, "\",\", \";\", \"|\", \"tab\" or \"blanks\"")
+        })?),
+    };
+    let missing = match csv.missing.as_deref() {
+        None | Some("refuse") => Missing::Refuse,
+        Some("skip") => Missing::Skip,
+        Some(other) => return Err(value("[csv] missing", other, "\"refuse\" or \"skip\"")),
+    };
+    let hexadecimal = match csv.code_format.as_deref() {
+        None | Some("decimal") => false,
+        Some("hex") => true,
+        Some(other) => return Err(value("[csv] code_format", other, "\"decimal\" or \"hex\"")),
+    };
+    if let Some(bits) = csv.code_bits.filter(|b| !(2..=32).contains(b)) {
+        return Err(value("[csv] code_bits", bits, "the bits of a word, 2 to 32"));
+    }
+    let time_unit = match csv.time_unit.as_deref() {
+        None => None,
+        Some(name) => Some(TimeUnit::named(name).ok_or_else(|| {
+            value("[csv] time_unit", name, "\"s\", \"ms\", \"us\", \"ns\" or \"date\"")
+        })?),
+    };
+    let angle_unit = match bench.angle_unit.as_deref() {
+        None => None,
+        Some(name) => Some(AngleUnit::named(name).ok_or_else(|| {
+            value("[bench] angle_unit", name, "\"deg\", \"dms\", \"gon\" or \"rad\"")
+        })?),
+    };
+    if let (Some(header), Some(data)) = (csv.header_line, csv.data_line)
+        && data <= header
+    {
+        return Err(value("[csv] data_line", data, "a line after header_line"));
+    }
+    Ok(Dialect {
+        header_line: csv.header_line,
+        data_line: csv.data_line,
+        delimiter,
+        decimal,
+        comment: csv.comment.clone().unwrap_or_default().into_bytes(),
+        missing,
+        codes: CodeFormat { hexadecimal, bits: csv.code_bits },
+        time_unit,
+        angle_unit,
+    })
+}
+
+/// Columns for all files, with a run's own put over them. Unknown ones are refused with the nearest known one.
+pub(super) fn mapping(all: &Mapping, own: &Mapping) -> Result<Mapping, ReadError> {
+    let mut together = all.clone();
+    together.extend(own.clone());
+    match together.keys().find(|k| !KNOWN.contains(&k.as_str())) {
+        Some(unknown) => Err(ReadError {
+            place: Place::file(EXPERIMENT_FILE),
+            problem: Problem::unknown_key(unknown, KNOWN.iter().map(|k| (*k).to_owned()).collect()),
+        }),
+        None => Ok(together),
+    }
+}
+
+/// What is thrown away of each dwell.
+pub(super) fn discard(given: Option<&DiscardValue>) -> Result<Discard, ReadError> {
+    let expected = "seconds, or \"detect\"";
+    match given {
+        None => Ok(Discard::Seconds(0.0)),
+        Some(DiscardValue::Word(word)) if word == "detect" => Ok(Discard::Detected),
+        Some(DiscardValue::Word(word)) => Err(value("discard_s", word, expected)),
+        Some(DiscardValue::Seconds(s)) => {
+            not_negative("discard_s", Some(*s), expected)?;
+            Ok(Discard::Seconds(*s))
+        }
+    }
 }
