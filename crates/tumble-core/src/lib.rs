@@ -11,6 +11,7 @@ mod compensator;
 pub mod estimate;
 mod experiment;
 mod finding;
+mod first_look;
 mod gravity;
 mod histogram;
 pub mod judge;
@@ -32,6 +33,7 @@ pub use experiment::{
     VerticalPair,
 };
 pub use finding::{Finding, FindingKind, Severity};
+pub use first_look::{DwellFacts, FirstLook, dwell_facts, first_look};
 pub use gravity::{Gravity, GravitySource};
 pub use histogram::CodeHistogram;
 pub use nominal::{

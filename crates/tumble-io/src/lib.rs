@@ -3,12 +3,14 @@
 //! Only this crate knows serialized shapes. Arithmetic on measurands happens in `tumble-core`.
 
 mod certify;
+mod check;
 mod compensation;
 mod csv;
 mod digest;
 mod error;
 mod experiment_file;
 mod folder;
+mod init;
 mod output;
 pub mod passport;
 mod simulation;
@@ -16,10 +18,12 @@ mod source;
 mod zst;
 
 pub use certify::{CertifyError, CertifyOptions, certify, certify_watched};
+pub use check::{Check, CheckedDwell, CheckedRun, check};
 pub use compensation::{CompensationRefused, Proof, compensator};
 pub use csv::{CodeStream, CodeStreamError, Reading};
 pub use error::{Place, Problem, ReadError};
 pub use folder::{ExperimentFolder, FileDigest, read_experiment};
-pub use output::{Existing, OutputError, OutputFolder, Written};
+pub use init::{Assumed, InitDraft, InitFacts, draft_experiment, experiment_file};
+pub use output::{Existing, OutputError, OutputFolder, Written, write_file};
 pub use simulation::{SimulationError, SimulationOptions, write_simulation};
 pub use source::Watch;

@@ -175,6 +175,43 @@ impl OutputFolder {
     }
 }
 
+/// Writes one file aside and moves it into its place. Another content is refused, or moved to a free name, which is given.
+pub fn write_file(
+    path: &Path,
+    bytes: &[u8],
+    existing: Existing,
+) -> Result<Option<PathBuf>, OutputError> {
+    let io = |source| OutputError::Io { path: path.to_path_buf(), source };
+    let there = match fs::read(path) {
+        Ok(old) if old == bytes => return Ok(None),
+        Ok(_) => true,
+        Err(e) if e.kind() == io::ErrorKind::NotFound => false,
+        Err(e) => return Err(io(e)),
+    };
+    if there && existing == Existing::Keep {
+        let folder = path.parent().unwrap_or(path).to_path_buf();
+        let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        return Err(OutputError::Occupied { folder, file });
+    }
+    let aside = beside(path, &format!("{}.tumble-new", std::process::id()));
+    let write = || {
+        let mut file = fs::File::create(&aside)?;
+        io::Write::write_all(&mut file, bytes)?;
+        file.sync_all()
+    };
+    if let Err(e) = write() {
+        // Best effort: the error that matters is the first one.
+        let _ = fs::remove_file(&aside);
+        return Err(io(e));
+    }
+    let kept = there.then(|| free_name(path));
+    if let Some(kept) = &kept {
+        rename(path, kept)?;
+    }
+    rename(&aside, path)?;
+    Ok(kept)
+}
+
 enum Difference {
     Absent,
     None,

@@ -25,12 +25,87 @@ pub(crate) struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    /// Draft an experiment.toml from your CSV files.
+    Init(InitArgs),
+    /// Say what was read of an experiment, without judgement.
+    Check(CheckArgs),
     /// Certify experiments: estimate, judge, write the passport.
     Certify(CertifyArgs),
     /// Simulate an experiment with a known truth.
     Simulate(Box<SimulateArgs>),
     /// Turn codes into m/s² with a passport.
     Compensate(CompensateArgs),
+}
+
+#[derive(Debug, Args)]
+#[command(
+    allow_negative_numbers = true,
+    after_help = "\
+Looks at the files, guesses columns, units, rate, dwells, angles and scale, asks
+nothing, writes a commented experiment.toml beside them, and says what it
+assumed. Files of one sensor lie in one folder.
+
+Examples:
+  tumble init log.csv --latitude 50 --height 150
+  tumble init run-*.csv --model ADXL203 --serial 3
+  tumble init minus30.csv zero.csv plus30.csv
+  tumble init imu.csv --reading acc_y --gravity 9.8102"
+)]
+pub(crate) struct InitArgs {
+    /// CSV files of one sensor.
+    #[arg(required = true, value_name = "CSV")]
+    pub(crate) files: Vec<PathBuf>,
+    /// Model of the sensor; may name an entry of the catalogue.
+    #[arg(long)]
+    pub(crate) model: Option<String>,
+    /// Serial number.
+    #[arg(long)]
+    pub(crate) serial: Option<String>,
+    /// Column of the readings, by its header or number.
+    #[arg(long, value_name = "COLUMN")]
+    pub(crate) reading: Option<String>,
+    /// Local gravity, m/s².
+    #[arg(long, value_name = "M/S2", conflicts_with_all = ["latitude", "height"])]
+    pub(crate) gravity: Option<f64>,
+    /// Latitude of the bench, degrees.
+    #[arg(long, value_name = "DEG", requires = "height", allow_hyphen_values = true)]
+    pub(crate) latitude: Option<f64>,
+    /// Height of the bench, m.
+    #[arg(long, value_name = "M", requires = "latitude", allow_hyphen_values = true)]
+    pub(crate) height: Option<f64>,
+    /// Nominal scale factor, m/s² per LSB (or per unit of the readings).
+    #[arg(long, value_name = "M/S2")]
+    pub(crate) scale: Option<f64>,
+    /// Random error of setting an angle, standard, for instance 3arcmin.
+    #[arg(long, value_name = "ANGLE", value_parser = quantity::angle)]
+    pub(crate) scatter: Option<Angle>,
+    /// Print experiment.toml instead of writing it.
+    #[arg(long)]
+    pub(crate) print: bool,
+    /// Replace an experiment.toml that is there; the old one is kept beside it.
+    #[arg(long)]
+    pub(crate) replace: bool,
+    /// Print nothing but errors.
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+A table of the dwells: angle, samples, recorded rate, missing samples, mean,
+noise of single readings, temperature, distance from a plain line through the
+run. `off line` and `noise` are in the unit of the readings (LSB for codes).
+
+Examples:
+  tumble check my-sensor
+  tumble check my-sensor --json | jq '.runs[0].dwells[] | .angle_deg'")]
+pub(crate) struct CheckArgs {
+    /// Experiment folder (with an experiment.toml).
+    #[arg(value_name = "FOLDER")]
+    pub(crate) folder: PathBuf,
+    /// Print as JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

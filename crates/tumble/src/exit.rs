@@ -2,6 +2,8 @@
 
 use std::process::ExitCode;
 
+use tumble_io::{OutputError, Problem, ReadError};
+
 /// How a command ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Exit {
@@ -32,6 +34,33 @@ impl Exit {
             Self::Indeterminate => 4,
             Self::Failure => 5,
             Self::Interrupted => 130,
+        }
+    }
+
+    /// Input that is missing or wrong is usage; input that breaks while it is read is a failure.
+    pub(crate) fn of_reading(error: &ReadError) -> Self {
+        use std::io::ErrorKind::{
+            InvalidData, InvalidInput, NotFound, PermissionDenied, UnexpectedEof,
+        };
+        match &error.problem {
+            Problem::Io(e)
+                if !matches!(
+                    e.kind(),
+                    NotFound | PermissionDenied | InvalidData | InvalidInput | UnexpectedEof
+                ) =>
+            {
+                Self::Failure
+            }
+            _ => Self::Usage,
+        }
+    }
+
+    /// What cannot be written: a place that is taken is usage, everything else a failure.
+    pub(crate) fn of_writing(error: &OutputError) -> Self {
+        match error {
+            OutputError::Occupied { .. } => Self::Usage,
+            OutputError::Interrupted { .. } => Self::Interrupted,
+            OutputError::Io { .. } => Self::Failure,
         }
     }
 

@@ -4,6 +4,7 @@ mod cli;
 mod commands;
 mod exit;
 mod interrupt;
+mod progress;
 mod quantity;
 
 use clap::Parser as _;
@@ -12,6 +13,8 @@ fn main() -> std::process::ExitCode {
     let arguments = cli::Cli::parse();
     interrupt::install();
     let code = match arguments.command {
+        cli::Command::Init(a) => commands::init::run(&a),
+        cli::Command::Check(a) => commands::check::run(&a),
         cli::Command::Certify(a) => commands::certify::run(&a),
         cli::Command::Simulate(a) => commands::simulate::run(&a),
         cli::Command::Compensate(a) => commands::compensate::run(&a),

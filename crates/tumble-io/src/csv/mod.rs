@@ -18,10 +18,14 @@ mod run_file;
 mod sketch;
 mod stream;
 
-pub(crate) use clock::TimeUnit;
-pub(crate) use dial::AngleUnit;
+pub(crate) use clock::{TimeUnit, date_s};
+pub(crate) use dial::{AngleUnit, dms};
 pub(crate) use dialect::{Delimiter, Dialect, Missing};
-pub(crate) use header::{KNOWN, Mapping};
-pub(crate) use number::{CodeFormat, DecimalSign};
+pub(crate) use header::{KNOWN, Mapping, decoded};
+pub(crate) use lines::Lines;
+pub(crate) use number::{CodeFormat, DecimalSign, real, says_missing, trimmed};
+pub(crate) use roles::{HeaderUnit, Role, role};
+pub(crate) use row::FieldBuffer;
 pub(crate) use run_file::{Discard, Dwell, RunFileOptions, read_run_file};
+pub(crate) use sketch::{Sketch, sketch_file};
 pub use stream::{CodeStream, CodeStreamError, Reading};

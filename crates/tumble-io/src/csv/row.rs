@@ -9,12 +9,12 @@ use crate::error::{Place, Problem, ReadError};
 
 /// The places of a line's fields, kept from line to line so that nothing is allocated in the loop.
 #[derive(Default)]
-pub(super) struct FieldBuffer {
+pub(crate) struct FieldBuffer {
     ends: Vec<(usize, usize)>,
 }
 
 /// The fields of one line.
-pub(super) struct Fields<'a> {
+pub(crate) struct Fields<'a> {
     line: &'a [u8],
     ends: &'a [(usize, usize)],
 }
@@ -22,7 +22,7 @@ pub(super) struct Fields<'a> {
 impl FieldBuffer {
     /// Splits a line; a field in quotes may hold the delimiter.
     #[inline]
-    pub(super) fn split<'a>(&'a mut self, line: &'a [u8], delimiter: Delimiter) -> Fields<'a> {
+    pub(crate) fn split<'a>(&'a mut self, line: &'a [u8], delimiter: Delimiter) -> Fields<'a> {
         self.ends.clear();
         let Delimiter::Byte(delimiter) = delimiter else {
             self.split_at_blanks(line);
@@ -69,13 +69,13 @@ impl FieldBuffer {
 }
 
 impl<'a> Fields<'a> {
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.ends.len()
     }
 
     /// A field; the width was checked before.
     #[inline]
-    pub(super) fn get(&self, index: usize) -> &'a [u8] {
+    pub(crate) fn get(&self, index: usize) -> &'a [u8] {
         self.ends.get(index).map_or(&[], |(a, b)| &self.line[*a..*b])
     }
 }

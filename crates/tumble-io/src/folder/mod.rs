@@ -19,7 +19,7 @@ use crate::source::Watch;
 use settings::{bench, dialect, discard, mapping, missing, output, targets, value};
 
 /// Name of the file that makes a folder an experiment.
-const EXPERIMENT_FILE: &str = "experiment.toml";
+pub(crate) const EXPERIMENT_FILE: &str = "experiment.toml";
 
 /// One input with its digest.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -69,7 +69,16 @@ pub fn read_experiment(folder: &Path, watch: &dyn Watch) -> Result<ExperimentFol
         },
         _ => ReadError { place: Place::file(EXPERIMENT_FILE), problem: Problem::Io(e) },
     })?;
-    let text = std::str::from_utf8(&bytes).map_err(|_| ReadError {
+    read_described(folder, &bytes, watch)
+}
+
+/// Reads a folder as a text describes it that stands in it or is to stand there.
+pub(crate) fn read_described(
+    folder: &Path,
+    bytes: &[u8],
+    watch: &dyn Watch,
+) -> Result<ExperimentFolder, ReadError> {
+    let text = std::str::from_utf8(bytes).map_err(|_| ReadError {
         place: Place::file(EXPERIMENT_FILE),
         problem: Problem::Format { seen: "not UTF-8 text", remedy: "save the file as UTF-8" },
     })?;
@@ -81,7 +90,7 @@ pub fn read_experiment(folder: &Path, watch: &dyn Watch) -> Result<ExperimentFol
     let bench = bench(&file.bench)?;
     let names = run_names(&file.run)?;
     let mut inputs =
-        vec![FileDigest { file: EXPERIMENT_FILE.into(), sha256: crate::digest::sha256(&bytes) }];
+        vec![FileDigest { file: EXPERIMENT_FILE.into(), sha256: crate::digest::sha256(bytes) }];
     let mut findings = Vec::new();
 
     let dialect = dialect(&file.csv, &file.bench)?;
@@ -257,6 +266,13 @@ impl Reader<'_> {
             table.discard_s.as_ref(),
             table.angles_deg.as_deref(),
         )?;
+        if asked.angles_deg.is_some_and(|a| !a.is_empty() && a.iter().all(|a| a.is_nan())) {
+            return Err(value(
+                "[[run]] angles_deg",
+                "nan throughout",
+                "the dial's angle of each dwell, for instance [-30.0, 0.0, 30.0]",
+            ));
+        }
         if asked.angles_deg.is_some() && files.len() != 1 {
             return Err(value("[[run]] angles_deg", "given beside files", "one of the two"));
         }

@@ -1,18 +1,18 @@
 //! `tumble certify`
 
 use std::collections::BTreeSet;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use tumble_core::estimate::{EstimateOptions, Method, Weights};
 use tumble_io::passport::Passport;
 use tumble_io::{
-    CertifyError, CertifyOptions, Existing, OutputError, OutputFolder, Problem, Written, certify,
+    CertifyError, CertifyOptions, Existing, OutputError, OutputFolder, Written, certify_watched,
 };
 
 use crate::cli::{CertifyArgs, MethodArg, WeightsArg};
 use crate::exit::{Exit, complain};
 use crate::interrupt;
+use crate::progress::Progress;
 
 pub(crate) fn run(args: &CertifyArgs) -> Exit {
     let options = match options(args) {
@@ -25,9 +25,11 @@ pub(crate) fn run(args: &CertifyArgs) -> Exit {
     let several = args.folders.len() > 1;
     let mut taken = BTreeSet::new();
     let mut worst = Exit::Ok;
+    let progress = Progress::new(args.quiet);
     for folder in &args.folders {
-        let exit = match certify(folder, &options) {
+        let exit = match certify_watched(folder, &options, &progress) {
             Ok(passport) => {
+                progress.clear();
                 let out = args.out.as_ref().map(|out| {
                     if several {
                         out.join(subfolder(&passport, folder, &mut taken))
@@ -38,6 +40,7 @@ pub(crate) fn run(args: &CertifyArgs) -> Exit {
                 deliver(args, &passport, folder, out.as_deref(), several)
             }
             Err(e) => {
+                progress.clear();
                 // The file is named inside the folder; which folder, only several make unclear.
                 complain(if several {
                     format!("{}: {e}", folder.display())
@@ -45,8 +48,8 @@ pub(crate) fn run(args: &CertifyArgs) -> Exit {
                     e.to_string()
                 });
                 match &e {
-                    CertifyError::Read(r) if is_failure(&r.problem) => Exit::Failure,
-                    _ => Exit::Usage,
+                    CertifyError::Read(r) => Exit::of_reading(r),
+                    CertifyError::Assess(_) => Exit::Usage,
                 }
             }
         };
@@ -56,20 +59,6 @@ pub(crate) fn run(args: &CertifyArgs) -> Exit {
         }
     }
     worst
-}
-
-/// Input that is missing is usage; input that breaks while it is read is a failure.
-fn is_failure(problem: &Problem) -> bool {
-    use std::io::ErrorKind::{
-        InvalidData, InvalidInput, NotFound, PermissionDenied, UnexpectedEof,
-    };
-    match problem {
-        Problem::Io(e) => !matches!(
-            e.kind(),
-            NotFound | PermissionDenied | InvalidData | InvalidInput | UnexpectedEof
-        ),
-        _ => false,
-    }
 }
 
 fn options(args: &CertifyArgs) -> Result<CertifyOptions, &'static str> {
@@ -109,22 +98,21 @@ fn deliver(
     several: bool,
 ) -> Exit {
     let verdict = verdict_exit(args, passport);
-    let printed = match (args.quiet, args.json, several) {
-        (true, _, _) => Ok(()),
+    let text = match (args.quiet, args.json, several) {
+        (true, _, _) => Ok(String::new()),
         (_, true, true) => serde_json::to_string(passport)
-            .map_err(std::io::Error::other)
-            .and_then(|line| print(&format!("{line}\n"))),
-        (_, true, false) => {
-            passport.to_json().map_err(std::io::Error::other).and_then(|text| print(&text))
-        }
+            .map(|line| format!("{line}\n"))
+            .map_err(|e| e.to_string()),
+        (_, true, false) => passport.to_json().map_err(|e| e.to_string()),
         (_, false, true) => {
-            print(&format!("== {}\n{}\n", folder.display(), tumble_report::summary(passport)))
+            Ok(format!("== {}\n{}\n", folder.display(), tumble_report::summary(passport)))
         }
-        (_, false, false) => print(&tumble_report::summary(passport)),
+        (_, false, false) => Ok(tumble_report::summary(passport)),
     };
-    if let Err(e) = printed {
-        // A reader that closed early (`| head`) has what it wanted.
-        if e.kind() != std::io::ErrorKind::BrokenPipe {
+    match text {
+        Ok(text) if super::print(&text) == Exit::Ok => {}
+        Ok(_) => return Exit::Failure,
+        Err(e) => {
             complain(e);
             return Exit::Failure;
         }
@@ -139,11 +127,7 @@ fn deliver(
         }
         Err(e) => {
             complain(&e);
-            match e {
-                OutputError::Occupied { .. } => Exit::Usage,
-                OutputError::Interrupted { .. } => Exit::Interrupted,
-                OutputError::Io { .. } => Exit::Failure,
-            }
+            Exit::of_writing(&e)
         }
     }
 }
@@ -185,12 +169,6 @@ fn tell(out: &Path, written: &Written) {
             );
         }
     }
-}
-
-fn print(text: &str) -> std::io::Result<()> {
-    let mut stdout = std::io::stdout().lock();
-    stdout.write_all(text.as_bytes())?;
-    stdout.flush()
 }
 
 /// A name for a unit's folder: its serial, made safe; where two units share it, the experiment's folder is added.

@@ -2,9 +2,7 @@
 
 use tumble_core::simulate::{Preset, Truth};
 use tumble_core::{Code, Quantizer};
-use tumble_io::{
-    Existing, OutputError, SimulationError, SimulationOptions, Written, write_simulation,
-};
+use tumble_io::{Existing, SimulationError, SimulationOptions, Written, write_simulation};
 
 use crate::cli::{PresetArg, QuantizerArg, SimulateArgs};
 use crate::exit::{Exit, complain};
@@ -40,12 +38,9 @@ pub(crate) fn run(args: &SimulateArgs) -> Exit {
         Err(e) => {
             complain(&e);
             match e {
-                SimulationError::Truth(_)
-                | SimulationError::Output(OutputError::Occupied { .. }) => Exit::Usage,
-                SimulationError::Output(OutputError::Interrupted { .. }) => Exit::Interrupted,
-                SimulationError::Output(OutputError::Io { .. }) | SimulationError::Pack(_) => {
-                    Exit::Failure
-                }
+                SimulationError::Truth(_) => Exit::Usage,
+                SimulationError::Output(e) => Exit::of_writing(&e),
+                SimulationError::Pack(_) => Exit::Failure,
             }
         }
     }

@@ -1,0 +1,130 @@
+//! Which column is which: by name and unit first, by what it holds where the name says nothing.
+
+use super::survey::{Column, Survey};
+use crate::csv::{AngleUnit, HeaderUnit, Role, TimeUnit};
+
+/// Columns by their place in the file.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Roles {
+    pub(super) time: Option<usize>,
+    pub(super) angle: Option<usize>,
+    /// Candidates, likeliest first.
+    pub(super) readings: Vec<usize>,
+    pub(super) mean: Option<usize>,
+    pub(super) samples: Option<usize>,
+    pub(super) std: Option<usize>,
+    pub(super) temperature: Option<usize>,
+    pub(super) position: Option<usize>,
+    /// Which sensor a row belongs to, where there are several.
+    pub(super) sensor: Option<usize>,
+}
+
+/// Decides on the roles of a file's columns.
+pub(super) fn roles(survey: &Survey) -> Roles {
+    let columns = &survey.columns;
+    let named = |role: Role, fits: &dyn Fn(&Column) -> bool| {
+        columns.iter().position(|c| c.role == Some(role) && fits(c))
+    };
+    let mut found = Roles {
+        time: named(Role::Time, &|c| c.numbers + c.dates == c.filled && c.filled > 0)
+            .or_else(|| columns.iter().position(|c| c.dates > 0 && c.dates == c.filled))
+            .or_else(|| {
+                columns.iter().position(|c| {
+                    c.is_numeric()
+                        && c.always_rises()
+                        && !matches!(c.role, Some(Role::Position | Role::Angle | Role::Reading))
+                })
+            }),
+        angle: named(Role::Angle, &|c| c.numbers + c.dms == c.filled && c.filled > 0),
+        mean: named(Role::Mean, &Column::is_numeric),
+        samples: named(Role::Samples, &|c| c.is_codes() && c.least >= 1.0),
+        std: named(Role::Std, &Column::is_numeric),
+        temperature: named(Role::Temperature, &Column::is_numeric),
+        position: named(Role::Position, &|c| c.filled > 0),
+        sensor: named(Role::Sensor, &|c| (2..24).contains(&c.texts.len()) && c.changes > 0),
+        readings: Vec::new(),
+    };
+    // A mean without a count is a reading like others.
+    if found.mean.is_some() && found.samples.is_none() {
+        found.mean = None;
+    }
+    let taken = |f: &Roles, i: usize| {
+        [f.time, f.angle, f.mean, f.samples, f.std, f.temperature, f.position, f.sensor]
+            .contains(&Some(i))
+    };
+    if found.angle.is_none() {
+        found.angle = (0..columns.len()).find(|i| {
+            let c = &columns[*i];
+            !taken(&found, *i)
+                && !matches!(c.role, Some(Role::Reading | Role::Mean | Role::Samples | Role::Std))
+                && (c.numbers + c.dms == c.filled && c.filled > 0)
+                && (c.dms > 0 || c.largest.max(-c.least) <= 400.0)
+                && c.texts.len() > 2
+                && c.stays()
+        });
+    }
+    let number = |c: &Column| c.is_numeric() || c.is_codes();
+    let mut readings: Vec<usize> = (0..columns.len())
+        .filter(|i| !taken(&found, *i) && number(&columns[*i]) && columns[*i].texts.len() > 1)
+        .collect();
+    let named_reading = |i: &usize| {
+        columns[*i].role == Some(Role::Reading)
+            || columns[*i].unit.is_some_and(|u| u.of_readings().is_some())
+    };
+    if readings.iter().any(named_reading) {
+        readings.retain(named_reading);
+    }
+    // Where a name says nothing, what moves most is the likeliest.
+    readings.sort_by_key(|i| (!named_reading(i), std::cmp::Reverse(columns[*i].changes.min(1000))));
+    found.readings = readings;
+    found
+}
+
+/// The unit of a column of times, and why.
+pub(super) fn time_unit(c: &Column, rows: u64) -> (TimeUnit, &'static str) {
+    match c.unit {
+        _ if c.dates > 0 => return (TimeUnit::Date, "dates or times of day"),
+        Some(HeaderUnit::Milliseconds) => return (TimeUnit::Milliseconds, "by the header"),
+        Some(HeaderUnit::Microseconds) => return (TimeUnit::Microseconds, "by the header"),
+        Some(HeaderUnit::Nanoseconds) => return (TimeUnit::Nanoseconds, "by the header"),
+        Some(HeaderUnit::Seconds) => return (TimeUnit::Seconds, "by the header"),
+        _ => {}
+    }
+    let lower = c.name.to_lowercase();
+    if lower.contains("milli") {
+        return (TimeUnit::Milliseconds, "by the header");
+    }
+    if lower.contains("micro") {
+        return (TimeUnit::Microseconds, "by the header");
+    }
+    // Seconds since 1970 passed 1e9 in 2001.
+    let epoch = "the size of times since 1970";
+    match c.largest {
+        t if t > 1e17 => return (TimeUnit::Nanoseconds, epoch),
+        t if t > 1e14 => return (TimeUnit::Microseconds, epoch),
+        t if t > 1e11 => return (TimeUnit::Milliseconds, epoch),
+        t if t > 1e9 => return (TimeUnit::Seconds, epoch),
+        _ => {}
+    }
+    let step = (c.largest - c.least) / rows.max(2) as f64;
+    match step {
+        s if c.whole == c.filled && s >= 900.0 => {
+            (TimeUnit::Microseconds, "whole numbers with steps near a thousand and more")
+        }
+        s if c.whole == c.filled && s >= 1.5 => {
+            (TimeUnit::Milliseconds, "whole numbers with steps of some units")
+        }
+        _ => (TimeUnit::Seconds, "the size of its steps"),
+    }
+}
+
+/// The unit of a column of angles, where the header says it.
+pub(super) fn angle_unit(c: &Column) -> Option<AngleUnit> {
+    match c.unit {
+        _ if c.dms > 0 => Some(AngleUnit::DegreesMinutesSeconds),
+        Some(HeaderUnit::Gon) => Some(AngleUnit::Gon),
+        Some(HeaderUnit::Radians) => Some(AngleUnit::Radians),
+        Some(HeaderUnit::Degrees) => Some(AngleUnit::Degrees),
+        _ => None,
+    }
+}
