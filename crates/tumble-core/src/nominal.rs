@@ -39,6 +39,10 @@ pub enum NominalScaleError {
     },
 }
 
+/// The sign trap: programs that take the pull of gravity for the acceleration, and give a sensitivity error near −200 %.
+const SIGN_REMEDY: &str = "Exchange `up` and `down` in [scale]; a record of the pull of gravity (−g with the axis up) is \
+                           read so, too: Tumble counts +g with the axis up, as IEEE 1293 does";
+
 impl std::fmt::Display for NominalScaleError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
@@ -52,8 +56,7 @@ impl std::fmt::Display for NominalScaleError {
             }
             Self::UpNotAboveDown { up_lsb, down_lsb } => write!(
                 f,
-                "[scale]: axis up reads {up_lsb:.2} and axis down {down_lsb:.2}; up must read more. \
-                 Swap `up` and `down`, or the axis is reversed"
+                "[scale]: axis up reads {up_lsb:.4} and axis down {down_lsb:.4}; up must read more. {SIGN_REMEDY}"
             ),
         }
     }
@@ -108,6 +111,15 @@ pub fn nominal_scale(
                         "check nominal_scale's unit (m/s² per LSB) and which file is up",
                     ),
                 }],
+                Some(Err(NominalScaleError::UpNotAboveDown { up_lsb, down_lsb })) => {
+                    vec![Finding {
+                        kind: FindingKind::SignReversed,
+                        place: String::from("[scale]"),
+                        observed: format!("axis up reads {up_lsb:.4}, axis down {down_lsb:.4}"),
+                        limit: String::from("up reads more than down"),
+                        remedy: SIGN_REMEDY.into(),
+                    }]
+                }
                 _ => Vec::new(),
             };
             Ok((scale, findings))

@@ -277,6 +277,10 @@ fn adjust(
         Ok(e) => return Some(e),
         Err(error) => error,
     };
+    // Up/down dwells that are exchanged find no fixed point, and that has been said already.
+    if findings.iter().any(|f| f.kind == FindingKind::SignReversed && f.place == "[scale]") {
+        return None;
+    }
     findings.push(Finding {
         kind: FindingKind::NotConverged,
         place: run.to_owned(),

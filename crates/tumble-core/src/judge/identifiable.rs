@@ -149,7 +149,18 @@ pub fn determined_result(
             p.coverage_factor
         );
         let limit = format!("target {target:.3e} {}", p.parameter.unit());
-        findings.push(if enough_positions && pooled_runs(runs) > 1 {
+        let by_budget = p.u_budget * p.coverage_factor > target;
+        findings.push(if by_budget {
+            Finding {
+                kind: FindingKind::Undetermined,
+                place,
+                observed,
+                limit,
+                remedy: "the uncertainty of gravity alone is larger: give latitude_deg and height_m in [bench] (or a measured \
+                         gravity with gravity_uncertainty); or state a wider target in [spec]"
+                    .into(),
+            }
+        } else if enough_positions && pooled_runs(runs) > 1 {
             Finding {
                 kind: FindingKind::RunsTooFew,
                 place,
