@@ -26,4 +26,4 @@ pub use folder::{ExperimentFolder, FileDigest, read_experiment};
 pub use init::{Assumed, InitDraft, InitFacts, draft_experiment, experiment_file};
 pub use output::{Existing, OutputError, OutputFolder, Written, write_file};
 pub use simulation::{SimulationError, SimulationOptions, write_simulation};
-pub use source::Watch;
+pub use source::{Watch, open_text};

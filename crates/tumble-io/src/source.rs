@@ -111,6 +111,21 @@ impl Source<'static> {
     }
 }
 
+/// A file's text as a stream, unpacked where it is gzip or zstd.
+///
+/// A pipe is read as it comes.
+///
+/// **Errors** [`ReadError`] where it cannot be opened, or is no text.
+pub fn open_text(path: &Path) -> Result<Box<dyn Read>, ReadError> {
+    let shown_as = path.display().to_string();
+    let fail = |e| ReadError { place: Place::file(shown_as.as_str()), problem: Problem::Io(e) };
+    let kind = std::fs::metadata(path).map_err(fail)?;
+    if kind.is_file() || kind.is_dir() {
+        return Ok(Box::new(Source::open(path, &shown_as)?));
+    }
+    Ok(Box::new(File::open(path).map_err(fail)?))
+}
+
 impl<'w> Source<'w> {
     /// The same, telling how far it has come.
     pub(crate) fn watched<'v>(self, watch: &'v dyn Watch) -> Source<'v> {

@@ -1,11 +1,10 @@
 //! `tumble compensate`
 
-use std::fs::File;
 use std::io::{self, Read, Write};
 
 use tumble_core::{Compensator, Quantizer};
 use tumble_io::passport::Passport;
-use tumble_io::{CodeStream, CompensationRefused, Proof, ReadError, compensator};
+use tumble_io::{CodeStream, CompensationRefused, Proof, ReadError, compensator, open_text};
 
 use crate::cli::CompensateArgs;
 use crate::exit::{Exit, complain};
@@ -19,11 +18,11 @@ pub(crate) fn run(args: &CompensateArgs) -> Exit {
         }
     };
     let (reader, name): (Box<dyn Read>, String) = match &args.input {
-        Some(path) => match File::open(path) {
-            Ok(file) => (Box::new(file), path.display().to_string()),
+        Some(path) => match open_text(path) {
+            Ok(text) => (Box::new(text), path.display().to_string()),
             Err(e) => {
-                complain(format!("{}: {e}", path.display()));
-                return Exit::Usage;
+                complain(&e);
+                return Exit::of_reading(&e);
             }
         },
         None => (Box::new(io::stdin().lock()), "standard input".into()),
