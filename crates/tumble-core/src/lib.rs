@@ -10,6 +10,7 @@ mod blocks;
 mod compensator;
 pub mod estimate;
 mod experiment;
+mod explanation;
 mod finding;
 mod gravity;
 mod histogram;
@@ -30,6 +31,7 @@ pub use experiment::{
     Bench, DEFAULT_VERTICAL_LEAN_ARCMIN, Experiment, Output, Position, Run, Seat, Sensor, Targets,
     VerticalPair,
 };
+pub use explanation::Explanation;
 pub use finding::{Finding, FindingKind, Severity};
 pub use gravity::{Gravity, GravitySource};
 pub use histogram::CodeHistogram;

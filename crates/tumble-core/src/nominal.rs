@@ -84,7 +84,7 @@ pub fn nominal_scale_from_means(
 
 /// Relative disagreement between a stated and a measured `k0` that is worth a warning. Data sheets state ±4 to
 /// ±8 %; 10 % is beyond both.
-const DISAGREEMENT_LIMIT: f64 = 0.10;
+pub(crate) const DISAGREEMENT_LIMIT: f64 = 0.10;
 
 /// The nominal scale factor of an experiment, and what is noteworthy about it.
 pub fn nominal_scale(

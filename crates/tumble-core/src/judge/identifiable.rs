@@ -9,7 +9,7 @@ use crate::{Finding, FindingKind, Targets};
 
 /// Condition number (unit columns) from which the correlation is worth a warning. The best plans of a table
 /// that reaches ±60° have 5 to 11; the paper's own has 48.
-const CONDITION_WARNING: f64 = 30.0;
+pub(crate) const CONDITION_WARNING: f64 = 30.0;
 
 /// What the number of angles of a run allows.
 #[must_use]

@@ -5,10 +5,10 @@ use crate::term::{TermTest, test_term};
 use crate::{Finding, FindingKind};
 
 /// Significance at which a left-over curvature counts.
-const SIGNIFICANCE: f64 = 0.001;
+pub(crate) const SIGNIFICANCE: f64 = 0.001;
 /// Peak of a significant curvature, over the scatter of the positions, below which it only warns. With 60
 /// positions nothing smaller than 0.9 becomes significant; with thousands, curvature far below the scatter does.
-const MATERIAL_SHARE: f64 = 0.5;
+pub(crate) const MATERIAL_SHARE: f64 = 0.5;
 
 /// Curvature left over in the residuals of all runs together.
 #[derive(Debug, Clone, Copy, PartialEq)]

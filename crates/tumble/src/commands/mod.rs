@@ -2,4 +2,7 @@
 
 pub(crate) mod certify;
 pub(crate) mod compensate;
+pub(crate) mod completions;
+pub(crate) mod explain;
+pub(crate) mod man;
 pub(crate) mod simulate;
