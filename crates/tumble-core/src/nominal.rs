@@ -48,7 +48,10 @@ impl std::fmt::Display for NominalScaleError {
                  axis up and down in [scale]"
             ),
             Self::NotPositive { stated } => {
-                write!(f, "nominal_scale = {stated} is not a positive number of m/s² per LSB")
+                write!(
+                    f,
+                    "nominal_scale = {stated} is not a positive number; give m/s² per LSB (g per LSB times 9.80665)"
+                )
             }
             Self::UpNotAboveDown { up_lsb, down_lsb } => write!(
                 f,

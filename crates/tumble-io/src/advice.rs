@@ -54,6 +54,12 @@ pub(crate) fn with_similar_names(e: Error, path: &Path) -> Error {
     )
 }
 
+/// [`advice`] on a refusal for a path; where there is no such file, with names in its folder that are like it.
+#[must_use]
+pub fn advice_at(e: Error, path: &Path) -> String {
+    advice(&with_similar_names(e, path))
+}
+
 /// What a refusal of the operating system means and what to do about it.
 #[must_use]
 pub fn advice(e: &Error) -> String {

@@ -187,7 +187,7 @@ impl fmt::Display for Problem {
             names.iter().map(|n| format!("`{}`", visible(n))).collect::<Vec<_>>().join(", ")
         };
         match self {
-            Self::Io(e) => write!(f, "{e}"),
+            Self::Io(e) => f.write_str(&crate::advice(e)),
             Self::NoExperiment { folder } => write!(
                 f,
                 "no experiment.toml in {}; an experiment is a folder with experiment.toml and its run files \
@@ -199,7 +199,9 @@ impl fmt::Display for Problem {
                 write!(f, "unknown key `{}`", visible(key))?;
                 match nearest {
                     Some(n) => write!(f, "; did you mean `{n}`?"),
-                    None => write!(f, "; known here: {}", list(known)),
+                    None => {
+                        write!(f, "; remove it, or use one of those known here: {}", list(known))
+                    }
                 }
             }
             Self::MissingKey { key, example } => write!(f, "{key} is missing; write {example}"),
@@ -220,11 +222,14 @@ impl fmt::Display for Problem {
             Self::Format { seen, remedy } => write!(f, "{seen}; {remedy}"),
             Self::TooLarge { limit } => write!(
                 f,
-                "unpacks to more than {} GiB; split the record into runs, or unpack it",
+                "unpacks to more than {} GiB; split the record into one file a run",
                 limit >> 30
             ),
             Self::LineTooLong { limit } => {
-                write!(f, "a line longer than {limit} bytes; is this a CSV file?")
+                write!(
+                    f,
+                    "a line longer than {limit} bytes; give a CSV file with one reading a line (is this a binary file?)"
+                )
             }
             Self::Empty { what } => write!(f, "{what}"),
             Self::Columns { seen, what, remedy } => {

@@ -17,7 +17,7 @@ pub mod passport;
 mod simulation;
 mod source;
 
-pub use advice::advice;
+pub use advice::{advice, advice_at};
 pub use certify::{CertifyError, CertifyOptions, certify};
 pub use compensation::{CompensationRefused, Proof, compensator};
 pub use csv::{CodeStream, CodeStreamError, Reading};

@@ -142,13 +142,12 @@ pub fn determined_result(
             None => p.parameter.words().to_owned(),
         };
         let observed = format!(
-            "expanded uncertainty {:.3e} {} ({:.0} %, k = {:.2})",
-            p.expanded_uncertainty,
-            p.parameter.unit(),
+            "expanded uncertainty {} ({:.0} %, k = {:.2})",
+            p.parameter.shown(p.expanded_uncertainty),
             level * 100.0,
             p.coverage_factor
         );
-        let limit = format!("target {target:.3e} {}", p.parameter.unit());
+        let limit = format!("target {}", p.parameter.shown(target));
         findings.push(if enough_positions && pooled_runs(runs) > 1 {
             Finding {
                 kind: FindingKind::RunsTooFew,

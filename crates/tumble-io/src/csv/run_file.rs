@@ -88,7 +88,7 @@ pub(crate) fn read_run_file(
         raw::read(&mut lines, &place, &columns, options)?
     };
     if dwells.is_empty() {
-        let what = "no rows under the header";
+        let what = "no rows under the header; export the record again, with its readings";
         return Err(ReadError { place, problem: Problem::Empty { what } });
     }
     let sha256 = lines

@@ -10,6 +10,7 @@ use tumble_core::{
     Seat, Sensor, VerticalPair,
 };
 
+use crate::advice::with_similar_names;
 use crate::csv::{Dwell, RunFileOptions, read_run_file};
 use crate::error::{Place, Problem, ReadError};
 use crate::experiment_file::{self, BenchTable, Orientation, RunTable, ScaleTable};
@@ -74,6 +75,10 @@ pub fn read_experiment(folder: &Path) -> Result<ExperimentFolder, ReadError> {
     if let Some(format) = file.format.filter(|f| *f != 1) {
         return Err(value("format", format, "1: this is a file of a newer version"));
     }
+    let issued = file.issued.as_ref().map(experiment_file::date_text);
+    if let Some(day) = issued.as_ref().filter(|d| !crate::is_iso_date(d)) {
+        return Err(value("issued", day, "a day as YYYY-MM-DD, for instance 2026-11-23"));
+    }
     let output = output(&file.output)?;
     let bench = bench(&file.bench)?;
     let names = run_names(&file.run)?;
@@ -116,7 +121,7 @@ pub fn read_experiment(folder: &Path) -> Result<ExperimentFolder, ReadError> {
             targets: targets(&file)?,
         },
         id: file.id.clone(),
-        issued: file.issued.as_ref().map(experiment_file::date_text),
+        issued,
         inputs,
         findings,
         remarks: file
@@ -178,7 +183,10 @@ impl Reader<'_> {
             return Err(outside());
         }
         let path = self.folder.join(relative);
-        let io = |e| ReadError { place: Place::file(file), problem: Problem::Io(e) };
+        let io = |e| ReadError {
+            place: Place::file(file),
+            problem: Problem::Io(with_similar_names(e, &path)),
+        };
         let real = path.canonicalize().map_err(io)?;
         let root = self.folder.canonicalize().map_err(io)?;
         if real.starts_with(root) { Ok(path) } else { Err(outside()) }

@@ -7,7 +7,7 @@ use tumble_core::estimate::{
 use tumble_core::linalg::Matrix;
 use tumble_core::term::TermTest;
 use tumble_core::{
-    ARCMIN_RAD, Experiment, GravitySource, NominalScaleSource, Quantizer, QuantizerOffset, Severity,
+    ARCMIN_RAD, Experiment, GravitySource, NominalScaleSource, Quantizer, QuantizerOffset,
 };
 
 use super::types as wire;

@@ -125,7 +125,7 @@ fn deliver(
     if let Err(e) = printed {
         // A reader that closed early (`| head`) has what it wanted.
         if e.kind() != std::io::ErrorKind::BrokenPipe {
-            complain(e);
+            complain(format!("standard output: {}", tumble_io::advice(&e)));
             return Exit::Failure;
         }
     }

@@ -5,7 +5,9 @@ use std::io::{self, Read, Write};
 
 use tumble_core::{Compensator, Quantizer};
 use tumble_io::passport::Passport;
-use tumble_io::{CodeStream, CompensationRefused, Proof, ReadError, compensator};
+use tumble_io::{
+    CodeStream, CompensationRefused, Proof, ReadError, advice, advice_at, compensator,
+};
 
 use crate::cli::CompensateArgs;
 use crate::exit::{Exit, complain};
@@ -22,7 +24,7 @@ pub(crate) fn run(args: &CompensateArgs) -> Exit {
         Some(path) => match File::open(path) {
             Ok(file) => (Box::new(file), path.display().to_string()),
             Err(e) => {
-                complain(format!("{}: {e}", path.display()));
+                complain(format!("{}: {}", path.display(), advice_at(e, path)));
                 return Exit::Usage;
             }
         },
@@ -44,7 +46,7 @@ pub(crate) fn run(args: &CompensateArgs) -> Exit {
         }
         Err(StreamError::Write(e)) if e.kind() == io::ErrorKind::BrokenPipe => Exit::Ok,
         Err(StreamError::Write(e)) => {
-            complain(e);
+            complain(format!("standard output: {}", advice(&e)));
             Exit::Failure
         }
     }
@@ -53,7 +55,7 @@ pub(crate) fn run(args: &CompensateArgs) -> Exit {
 fn load(args: &CompensateArgs) -> Result<Compensator, (String, Exit)> {
     let name = args.passport.display();
     let text = std::fs::read_to_string(&args.passport)
-        .map_err(|e| (format!("{name}: {e}"), Exit::Usage))?;
+        .map_err(|e| (format!("{name}: {}", advice_at(e, &args.passport)), Exit::Usage))?;
     let passport = Passport::from_json(&text).map_err(|e| (format!("{name}: {e}"), Exit::Usage))?;
     let proof = if args.unproven { Proof::Waived } else { Proof::Required };
     compensator(&passport, proof).map_err(|e| {

@@ -21,7 +21,8 @@ pub(crate) fn run(args: &ExplainArgs) -> Exit {
     }
     match (args.json, kinds.as_slice()) {
         (true, some) => {
-            let json = tumble_io::explained_json(if some.is_empty() { FindingKind::ALL } else { some });
+            let json =
+                tumble_io::explained_json(if some.is_empty() { FindingKind::ALL } else { some });
             match json {
                 Ok(text) => deliver(&text),
                 Err(e) => {
@@ -40,7 +41,9 @@ fn unknown(id: &str) -> String {
         .into_iter()
         .map(|k| format!("\n  {}  {}", k.id(), k.title()))
         .collect();
-    let shown: String = id.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).take(40).collect();
-    let near = if near.is_empty() { String::new() } else { format!("; near it are{}", near.concat()) };
+    let shown: String =
+        id.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).take(40).collect();
+    let near =
+        if near.is_empty() { String::new() } else { format!("; near it are{}", near.concat()) };
     format!("no finding has the id `{shown}`{near}\n`tumble explain` without an id lists all")
 }

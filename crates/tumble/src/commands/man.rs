@@ -30,7 +30,9 @@ pub(crate) fn pages() -> io::Result<Vec<(String, String)>> {
     definition.build();
     let page = |name: String, command: clap::Command| {
         let mut text = Vec::new();
-        clap_mangen::Man::new(command.display_name(name.clone())).title(name.clone()).render(&mut text)?;
+        clap_mangen::Man::new(command.display_name(name.clone()))
+            .title(name.clone())
+            .render(&mut text)?;
         Ok((format!("{name}.1"), String::from_utf8_lossy(&text).into_owned()))
     };
     let mut pages = vec![page("tumble".into(), definition.clone())];
