@@ -42,7 +42,12 @@ pub(crate) fn with_similar_names(e: Error, path: &Path) -> Error {
         .flatten()
         .take(MOST)
         .filter_map(|entry| name(&entry.ok()?.path()))
-        .map(|n| (strsim::jaro_winkler(&n.to_lowercase(), &wanted), n))
+        .map(|n| {
+            let own = n.to_lowercase();
+            // A forgotten or doubled ending is the likeliest slip of all.
+            let ending = own.starts_with(&wanted) || wanted.starts_with(&own);
+            (if ending { 1.0 } else { strsim::jaro_winkler(&own, &wanted) }, n)
+        })
         .filter(|(similar, _)| *similar > SIMILAR)
         .collect();
     // The likest first; by name where they are alike, whatever order the folder has.

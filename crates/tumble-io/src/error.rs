@@ -52,9 +52,12 @@ fn printable(text: &str) -> String {
 
 /// [`printable`], and cut where it is long.
 pub(crate) fn visible(text: &str) -> String {
-    const LONGEST: usize = 80;
-    let mut out: String = printable(text).chars().take(LONGEST).collect();
-    if text.chars().nth(LONGEST).is_some() {
+    shortened(text, 80)
+}
+
+fn shortened(text: &str, longest: usize) -> String {
+    let mut out: String = printable(text).chars().take(longest).collect();
+    if text.chars().nth(longest).is_some() {
         out.push('…');
     }
     out
@@ -256,9 +259,9 @@ impl fmt::Display for Problem {
     }
 }
 
-/// A parser's message may have several lines; each is made visible.
+/// A parser's message and its remedy have several lines; each is made visible.
 fn visible_lines(text: &str) -> String {
-    text.lines().map(visible).collect::<Vec<_>>().join("; ")
+    text.lines().map(|line| shortened(line, 240)).collect::<Vec<_>>().join("; ")
 }
 
 impl std::error::Error for ReadError {

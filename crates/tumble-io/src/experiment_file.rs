@@ -172,7 +172,7 @@ fn problem(message: &str, line: &str) -> Problem {
                 .map(|(_, k)| k.clone());
             Problem::UnknownKey { key, nearest, known }
         }
-        _ => Problem::Toml { message: format!("{message}; {}", toml_remedy(message, line)) },
+        _ => Problem::Toml { message: format!("{message}\n{}", toml_remedy(message, line)) },
     }
 }
 
@@ -223,7 +223,7 @@ fn toml_remedy(message: &str, line: &str) -> String {
     if message.starts_with("unknown variant") {
         return "write one of these, in small letters".into();
     }
-    if line.starts_with('[') && !line.ends_with(']') {
+    if line.starts_with('[') && line.matches('[').count() != line.matches(']').count() {
         return "close the bracket: tables are [bench], runs [[run]]".into();
     }
     if given.matches('=').count() > 0 || (key.is_empty() && !line.starts_with('[')) {

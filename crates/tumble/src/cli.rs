@@ -41,8 +41,8 @@ pub(crate) enum Command {
 
 /// The way of a first experiment, by command.
 const FIRST_STEPS: [(&str, &str, &str); 5] = [
-    ("init", "tumble init run-1.csv", "a folder to fill in, from your files"),
-    ("simulate", "tumble simulate demo", "or one to look at, simulated"),
+    ("init", "tumble init run-1.csv", "a commented folder from your files"),
+    ("simulate", "tumble simulate demo", "a folder to look at, simulated"),
     ("check", "tumble check demo", "what was read"),
     ("certify", "tumble certify demo --out out", "the verdict, and the passport"),
     ("explain", "tumble explain T0205", "what a finding means"),

@@ -28,7 +28,7 @@ pub(super) fn sign_reversed() -> Explanation {
 pub(super) fn units_mixed_up() -> Explanation {
     Explanation::new(
         format!(
-            "The scale factor found is {} to {} times `nominal_scale`, or that part of it. Such a ratio is what g \
+            "The scale factor found is {} to {} times `nominal_scale`, or the other way round. Such a ratio is what g \
              written for m/s² gives ({STANDARD_GRAVITY_M_S2}).",
             UNITS_RATIO.start, UNITS_RATIO.end
         ),
