@@ -211,6 +211,11 @@ impl fmt::Display for Problem {
             Self::Value { key, given, expected } => {
                 write!(f, "{key} = {} is not possible; give {expected}", visible(given))
             }
+            Self::OutsideFolder { path } if path.contains('\\') => write!(
+                f,
+                "`{}` has backslashes; write / between folders, and a path inside the experiment folder",
+                visible(path)
+            ),
             Self::OutsideFolder { path } => write!(
                 f,
                 "`{}` leaves the experiment folder; copy the file into the folder and name it relative to experiment.toml",

@@ -272,7 +272,7 @@ mod tests {
             ("gravity =", "a line is KEY = VALUE"),
             ("gravity = 9.81\ngravity = 9.8", "remove one of the two"),
             ("[[run]\nfile = \"a.csv\"", "close the bracket"),
-            ("[[run]]\nfile = \"data\\run-1.csv\"", "write file = \"data/run-1.csv\""),
+            ("[[run]]\nfile = \"data\\a.csv\"", "write file = \"data/a.csv\""),
             ("[[run]]\nfile = \"C:\\Users\\a.csv\"", "write file = \"C:/Users/a.csv\""),
             ("[[run]]\nfile = run-1.csv", "write file = \"run-1.csv\""),
             ("[[run]]\nfile = 7", "write file = \"7\""),

@@ -176,6 +176,12 @@ impl Reader<'_> {
             place: Place::file(EXPERIMENT_FILE),
             problem: Problem::OutsideFolder { path: file.to_owned() },
         };
+        if file.contains(char::is_control) {
+            // "data\run-1.csv" is legal TOML with a carriage return in it.
+            let expected =
+                "a path with / between folders: between \" \" a backslash makes control characters";
+            return Err(value("file", crate::error::visible(file), expected));
+        }
         let relative = Path::new(file);
         let plain =
             relative.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
