@@ -164,6 +164,7 @@ fn manual_pages_hold_every_command() {
         assert!(page.contains(&format!(".TH {} 1", file.trim_end_matches(".1"))), "{file}: {page}");
     }
     assert_eq!(pages.len(), commands().len() + 1);
+    assert!(!main.contains("tumble\\-help"), "a page that does not exist");
 }
 
 #[test]

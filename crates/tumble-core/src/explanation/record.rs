@@ -44,8 +44,7 @@ pub(super) fn dwell_does_not_fit() -> Explanation {
     Explanation::new(
         "One position contradicts the fit of all the others (leave one out), and no slip of the pen explains its \
          angle.",
-        "If the reading or the angle is wrong, the position pulls all values its way. If it is right, the model does \
-         not hold there. It stays in the result.",
+        "If the reading or the angle is wrong, the position pulls all values its way. If it is right, the model does not hold there.",
         "Measure that angle once more. If the new dwell fits, the first one was disturbed: remove it and say so in \
          `note`. If it does not, look at the table there: a worn spot, a cable that pulls, a stop.",
         HYGIENE,
@@ -77,8 +76,7 @@ pub(super) fn dwell_two_levels() -> Explanation {
 
 pub(super) fn outlying_samples() -> Explanation {
     Explanation::new(
-        "Single samples stand so far from the rest of their dwell that its noise does not explain them. They are \
-         counted like all others.",
+        "Single samples stand so far from the rest of their dwell that its noise does not explain them.",
         "Spikes come from the link, the supply or a knock on the bench. A few of them move the mean of a dwell, and \
          they make the noise look larger than it is.",
         "Look at the named lines. Mend the cause (cable, grounding, a lost bit) and measure the dwell again; remove \
@@ -186,8 +184,7 @@ pub(super) fn settling_left_out() -> Explanation {
 
 pub(super) fn dwells_cut_out() -> Explanation {
     Explanation::new(
-        "The record runs on while the table is turned. The dwells were cut out of it where the reading stands still; \
-         the rows between them were not used.",
+        "The record runs on while the table is turned. The dwells were cut out of it, and the rows between them were not used.",
         "The cut decides which rows count for which angle. A cut at the wrong place mixes movement into a dwell.",
         "Compare number and length of the dwells in the report with your notes. If they differ, write one file a dwell \
          (`files = [{file = \"a.csv\", angle_deg = -30.0}]`) or an angle in every row.",

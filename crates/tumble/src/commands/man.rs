@@ -26,7 +26,8 @@ pub(crate) fn run(args: &ManArgs) -> Exit {
 
 /// `tumble.1` first, then a page a command, `tumble-certify.1`.
 pub(crate) fn pages() -> io::Result<Vec<(String, String)>> {
-    let mut definition = definition();
+    // `help` has no page: it prints the others' help.
+    let mut definition = definition().disable_help_subcommand(true);
     definition.build();
     let page = |name: String, command: clap::Command| {
         let mut text = Vec::new();
@@ -36,7 +37,7 @@ pub(crate) fn pages() -> io::Result<Vec<(String, String)>> {
         Ok((format!("{name}.1"), String::from_utf8_lossy(&text).into_owned()))
     };
     let mut pages = vec![page("tumble".into(), definition.clone())];
-    for command in definition.get_subcommands().filter(|c| c.get_name() != "help") {
+    for command in definition.get_subcommands() {
         pages.push(page(format!("tumble-{}", command.get_name()), command.clone()));
     }
     pages.into_iter().collect()
