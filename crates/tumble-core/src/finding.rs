@@ -196,9 +196,91 @@ finding_kinds! {
     AngleOutsideRange = "T0320", Warning, "dwells outside the table's stated range";
 }
 
+impl FindingKind {
+    /// The kind with an id, in any case and with or without the leading `T0`: `T0205`, `t205`, `205`.
+    ///
+    /// ```
+    /// use tumble_core::FindingKind;
+    /// assert_eq!(FindingKind::from_id("t205"), Some(FindingKind::IllConditioned));
+    /// assert_eq!(FindingKind::from_id("T9999"), None);
+    /// ```
+    #[must_use]
+    pub fn from_id(text: &str) -> Option<Self> {
+        let number = |id: &str| {
+            let digits = id.trim_start_matches(['T', 't']);
+            (id.len() - digits.len() <= 1 && digits.bytes().all(|b| b.is_ascii_digit()))
+                .then(|| digits.parse::<u16>().ok())
+                .flatten()
+        };
+        let wanted = number(text.trim())?;
+        Self::ALL.iter().copied().find(|k| number(k.id()) == Some(wanted))
+    }
+}
+
+impl FindingKind {
+    /// Kinds near a text that is no id: the three with the nearest numbers, or those with the word in their titles.
+    #[must_use]
+    pub fn nearest(text: &str) -> Vec<Self> {
+        let text = text.trim().to_lowercase();
+        let number: Option<u32> = text.trim_start_matches('t').parse().ok();
+        match number {
+            Some(wanted) => {
+                let distance = |k: &Self| {
+                    k.id()
+                        .trim_start_matches('T')
+                        .parse()
+                        .map_or(u32::MAX, |n: u32| n.abs_diff(wanted))
+                };
+                let mut all = Self::ALL.to_vec();
+                all.sort_by_key(distance);
+                all.truncate(3);
+                all
+            }
+            None if text.chars().count() > 2 => Self::ALL
+                .iter()
+                .copied()
+                .filter(|k| k.title().to_lowercase().contains(&text))
+                .collect(),
+            None => Vec::new(),
+        }
+    }
+}
+
+impl Severity {
+    /// Name in the passport.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Note => "note",
+            Self::Warning => "warning",
+            Self::Missing => "missing",
+            Self::Reject => "reject",
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn ids_are_found_as_people_type_them() {
+        for typed in ["T0123", "t0123", "t123", "123", "0123", " T123 "] {
+            assert_eq!(FindingKind::from_id(typed), Some(FindingKind::DwellTwoLevels), "{typed}");
+        }
+        for wrong in ["", "T", "TT0123", "12x", "-123", "T0199", "99999999", "T0123a"] {
+            assert_eq!(FindingKind::from_id(wrong), None, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn near_ids_by_number_or_word() {
+        let ids = |text| FindingKind::nearest(text).iter().map(|k| k.id()).collect::<Vec<_>>();
+        assert_eq!(ids("T0131")[0], "T0130");
+        assert_eq!(ids("t9999").len(), 3);
+        assert_eq!(ids("gravity"), ["T0306", "T0307"]);
+        assert!(ids("").is_empty() && ids("zz").is_empty());
+    }
 
     #[test]
     fn ids_are_unique_and_ascending() {

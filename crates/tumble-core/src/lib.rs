@@ -10,6 +10,7 @@ mod blocks;
 mod compensator;
 pub mod estimate;
 mod experiment;
+mod explanation;
 mod finding;
 mod first_look;
 mod gravity;
@@ -32,6 +33,7 @@ pub use experiment::{
     Bench, DEFAULT_VERTICAL_LEAN_ARCMIN, Experiment, Output, Position, Run, Seat, Sensor, Targets,
     VerticalPair,
 };
+pub use explanation::Explanation;
 pub use finding::{Finding, FindingKind, Severity};
 pub use first_look::{DwellFacts, FirstLook, dwell_facts, first_look};
 pub use gravity::{Gravity, GravitySource};

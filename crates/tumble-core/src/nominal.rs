@@ -52,7 +52,10 @@ impl std::fmt::Display for NominalScaleError {
                  axis up and down in [scale]"
             ),
             Self::NotPositive { stated } => {
-                write!(f, "nominal_scale = {stated} is not a positive number of m/s² per LSB")
+                write!(
+                    f,
+                    "nominal_scale = {stated} is not a positive number; give m/s² per LSB (g per LSB times 9.80665)"
+                )
             }
             Self::UpNotAboveDown { up_lsb, down_lsb } => write!(
                 f,
@@ -87,7 +90,7 @@ pub fn nominal_scale_from_means(
 
 /// Relative disagreement between a stated and a measured `k0` that is worth a warning. Data sheets state ±4 to
 /// ±8 %; 10 % is beyond both.
-const DISAGREEMENT_LIMIT: f64 = 0.10;
+pub(crate) const DISAGREEMENT_LIMIT: f64 = 0.10;
 
 /// The nominal scale factor of an experiment, and what is noteworthy about it.
 pub fn nominal_scale(

@@ -52,14 +52,14 @@ impl std::fmt::Display for CompensationRefused {
             Self::Rejected { reasons } => {
                 write!(
                     f,
-                    "the calibration was rejected and has no coefficients: {}",
+                    "the calibration was rejected and has no coefficients; follow its first reason and certify again: {}",
                     first(reasons)
                 )
             }
             Self::Indeterminate { missing } => {
                 write!(
                     f,
-                    "the calibration is indeterminate and has no coefficients: {}",
+                    "the calibration is indeterminate and has no coefficients; supply what is missing and certify again: {}",
                     first(missing)
                 )
             }

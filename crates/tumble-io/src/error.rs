@@ -52,9 +52,12 @@ fn printable(text: &str) -> String {
 
 /// [`printable`], and cut where it is long.
 pub(crate) fn visible(text: &str) -> String {
-    const LONGEST: usize = 80;
-    let mut out: String = printable(text).chars().take(LONGEST).collect();
-    if text.chars().nth(LONGEST).is_some() {
+    shortened(text, 80)
+}
+
+fn shortened(text: &str, longest: usize) -> String {
+    let mut out: String = printable(text).chars().take(longest).collect();
+    if text.chars().nth(longest).is_some() {
         out.push('…');
     }
     out
@@ -242,7 +245,7 @@ impl fmt::Display for Problem {
             names.iter().map(|n| format!("`{}`", visible(n))).collect::<Vec<_>>().join(", ")
         };
         match self {
-            Self::Io(e) => write!(f, "{e}"),
+            Self::Io(e) => f.write_str(&crate::advice(e)),
             Self::NoExperiment { folder } => write!(
                 f,
                 "no experiment.toml in {}; an experiment is a folder with experiment.toml and its run files \
@@ -254,13 +257,20 @@ impl fmt::Display for Problem {
                 write!(f, "unknown key `{}`", visible(key))?;
                 match nearest {
                     Some(n) => write!(f, "; did you mean `{n}`?"),
-                    None => write!(f, "; known here: {}", list(known)),
+                    None => {
+                        write!(f, "; remove it, or use one of those known here: {}", list(known))
+                    }
                 }
             }
             Self::MissingKey { key, example } => write!(f, "{key} is missing; write {example}"),
             Self::Value { key, given, expected } => {
                 write!(f, "{key} = {} is not possible; give {expected}", visible(given))
             }
+            Self::OutsideFolder { path } if path.contains('\\') => write!(
+                f,
+                "`{}` has backslashes; write / between folders, and a path inside the experiment folder",
+                visible(path)
+            ),
             Self::OutsideFolder { path } => write!(
                 f,
                 "`{}` leaves the experiment folder; copy the file into the folder and name it relative to experiment.toml",
@@ -275,7 +285,7 @@ impl fmt::Display for Problem {
             Self::Format { seen, remedy } => write!(f, "{seen}; {remedy}"),
             Self::TooLarge { limit } => write!(
                 f,
-                "unpacks to more than {} GiB; split the record into runs, or unpack it",
+                "unpacks to more than {} GiB; split the record into one file a run",
                 limit >> 30
             ),
             Self::TooDense { limit } => write!(
@@ -311,7 +321,10 @@ impl fmt::Display for Problem {
                  split the record"
             ),
             Self::LineTooLong { limit } => {
-                write!(f, "a line longer than {limit} bytes; is this a CSV file?")
+                write!(
+                    f,
+                    "a line longer than {limit} bytes; give a CSV file with one reading a line (is this a binary file?)"
+                )
             }
             Self::Empty { what } => write!(f, "{what}"),
             Self::Columns { seen, what, remedy } => {
@@ -347,9 +360,9 @@ impl fmt::Display for Problem {
     }
 }
 
-/// A parser's message may have several lines; each is made visible.
+/// A parser's message and its remedy have several lines; each is made visible.
 fn visible_lines(text: &str) -> String {
-    text.lines().map(visible).collect::<Vec<_>>().join("; ")
+    text.lines().map(|line| shortened(line, 240)).collect::<Vec<_>>().join("; ")
 }
 
 impl std::error::Error for ReadError {

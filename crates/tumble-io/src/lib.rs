@@ -2,13 +2,16 @@
 //!
 //! Only this crate knows serialized shapes. Arithmetic on measurands happens in `tumble-core`.
 
+mod advice;
 mod certify;
 mod check;
 mod compensation;
 mod csv;
+mod date;
 mod digest;
 mod error;
 mod experiment_file;
+mod explained;
 mod folder;
 mod init;
 mod output;
@@ -17,11 +20,14 @@ mod simulation;
 mod source;
 mod zst;
 
+pub use advice::{advice, advice_at};
 pub use certify::{CertifyError, CertifyOptions, certify, certify_watched};
 pub use check::{Check, CheckedDwell, CheckedRun, check};
 pub use compensation::{CompensationRefused, Proof, compensator};
 pub use csv::{CodeStream, CodeStreamError, Reading};
+pub use date::is_iso_date;
 pub use error::{Place, Problem, ReadError};
+pub use explained::explained_json;
 pub use folder::{ExperimentFolder, FileDigest, read_experiment};
 pub use init::{Assumed, InitDraft, InitFacts, draft_experiment, experiment_file};
 pub use output::{Existing, OutputError, OutputFolder, Written, write_file};

@@ -64,7 +64,7 @@ impl std::fmt::Display for OutputError {
             Self::Interrupted { folder } => {
                 write!(f, "interrupted; {} was not touched", folder.display())
             }
-            Self::Io { path, source } => write!(f, "{}: {source}", path.display()),
+            Self::Io { path, source } => write!(f, "{}: {}", path.display(), crate::advice(source)),
         }
     }
 }

@@ -48,7 +48,7 @@ impl std::fmt::Display for SimulationError {
         match self {
             Self::Truth(e) => e.fmt(f),
             Self::Output(e) => e.fmt(f),
-            Self::Pack(e) => write!(f, "gzip: {e}"),
+            Self::Pack(e) => write!(f, "gzip: {}", crate::advice(e)),
         }
     }
 }

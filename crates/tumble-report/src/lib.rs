@@ -11,6 +11,7 @@
 //! rejected passport gets a report of why.
 
 mod check;
+mod explain;
 mod figure;
 mod html;
 mod merge;
@@ -23,6 +24,7 @@ mod units;
 mod words;
 
 pub use check::{check_table, init_summary};
+pub use explain::{explanation_list, explanation_page, explanations};
 pub use figure::{Figure, figures};
 pub use html::html;
 pub use numbers::value_with_uncertainty;

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use tumble_core::FindingKind;
 use tumble_io::passport::{Estimate, Finding, Passport, Scatter};
 
 use crate::merge::merged;
@@ -37,6 +38,10 @@ pub fn summary(passport: &Passport) -> String {
     subject(&mut out, &p);
     numbers(&mut out, &p);
     findings(&mut out, &p);
+    // Ids of another version are not explained by this one.
+    if let Some(kind) = p.findings.first().and_then(|f| FindingKind::from_id(&f.id)) {
+        let _ = writeln!(out, "\n`tumble explain {}` tells more", kind.id());
+    }
     out
 }
 
@@ -143,8 +148,12 @@ fn numbers(out: &mut String, p: &Passport) {
             out,
             "example",
             &format!(
-                "code {} is {} m/s²",
-                c.example.code,
+                "{} is {} m/s²",
+                match p.output.quantizer.as_str() {
+                    // Real numbers are no codes.
+                    "none" => format!("reading {} {}", c.example.code, units.reading),
+                    _ => format!("code {}", c.example.code),
+                },
                 significant(c.example.acceleration_m_s2, 6)
             ),
         );

@@ -157,3 +157,28 @@ fn the_same_passport_gives_the_same_bytes() {
     assert_eq!(html(&p), html(&p));
     assert_eq!(figures(&p), figures(&p));
 }
+
+#[test]
+fn real_numbers_are_readings_and_no_codes() {
+    let mut p = common::accepted();
+    assert!(summary(&p).contains("code "), "{}", summary(&p));
+    p.output.quantizer = "none".into();
+    p.output.unit = "V".into();
+    let text = summary(&p);
+    assert!(
+        text.contains(" V is ") && text.contains("reading ") && !text.contains("code "),
+        "{text}"
+    );
+}
+
+#[test]
+fn the_summary_names_the_command_that_explains() {
+    let mut p = common::accepted();
+    let first = p.findings[0].id.clone();
+    assert!(summary(&p).ends_with(&format!("\n`tumble explain {first}` tells more\n")));
+    // Of an id that this version does not know it promises nothing.
+    p.findings[0].id = "T9999".into();
+    assert!(!summary(&p).contains("tumble explain"));
+    p.findings.clear();
+    assert!(!summary(&p).contains("tumble explain"));
+}

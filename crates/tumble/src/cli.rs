@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, CommandFactory as _, FromArgMatches as _, Parser, Subcommand, ValueEnum};
 use tumble_core::Angle;
 
 use crate::quantity::{self, AccelerationArg, NoiseArg};
@@ -35,6 +35,40 @@ pub(crate) enum Command {
     Simulate(Box<SimulateArgs>),
     /// Turn codes into m/s² with a passport.
     Compensate(CompensateArgs),
+    /// Explain findings: what was seen, why it matters, what to do.
+    Explain(ExplainArgs),
+    /// Print completions for a shell.
+    Completions(CompletionsArgs),
+    /// Print the manual page, or write one a command.
+    Man(ManArgs),
+}
+
+/// The way of a first experiment, by command.
+const FIRST_STEPS: [(&str, &str, &str); 5] = [
+    ("init", "tumble init log.csv", "experiment.toml from your own files"),
+    ("simulate", "tumble simulate demo", "a folder to look at, simulated"),
+    ("check", "tumble check demo", "what was read"),
+    ("certify", "tumble certify demo --out out", "the verdict, and the passport"),
+    ("explain", "tumble explain T0205", "what a finding means"),
+];
+
+/// The definition with its first steps; a step stands there only with its command.
+pub(crate) fn definition() -> clap::Command {
+    let definition = Cli::command();
+    let mut help = String::from("First steps:\n");
+    for (command, line, remark) in FIRST_STEPS {
+        if definition.find_subcommand(command).is_some() {
+            help.push_str(&format!("  {line:<30}  # {remark}\n"));
+        }
+    }
+    let codes = definition.get_after_help().map(ToString::to_string).unwrap_or_default();
+    definition.after_help(format!("{help}\n{codes}"))
+}
+
+/// The command line as arguments, or clap's answer to it: help and versions exit with 0, everything else with 2.
+pub(crate) fn parse() -> Cli {
+    let matches = definition().get_matches();
+    Cli::from_arg_matches(&matches).unwrap_or_else(|e| e.exit())
 }
 
 #[derive(Debug, Args)]
@@ -133,7 +167,7 @@ pub(crate) enum WeightsArg {
 Examples:
   tumble certify examples/adxl203-3
   tumble certify my-sensor --out my-sensor/passport
-  tumble certify unit-1 unit-2 unit-3 --out passports   (a subfolder a serial)
+  tumble certify unit-1 unit-2 --out passports   # a subfolder a serial
   tumble certify my-sensor --json | jq .result.bias")]
 pub(crate) struct CertifyArgs {
     /// Experiment folders (each with an experiment.toml).
@@ -155,7 +189,7 @@ pub(crate) struct CertifyArgs {
     #[arg(long)]
     pub(crate) id: Option<String>,
     /// Day of issue, for instance 2026-11-23. Never taken from the clock.
-    #[arg(long, value_name = "DATE")]
+    #[arg(long, value_name = "DATE", value_parser = date)]
     pub(crate) issued: Option<String>,
     /// Print the passport as JSON (one line each, for several folders).
     #[arg(long)]
@@ -176,6 +210,13 @@ fn level(text: &str) -> Result<f64, String> {
         Ok(v) if (0.5..1.0).contains(&v) => Ok(v),
         _ => Err("give a level between 0.5 and 1, for instance 0.95".into()),
     }
+}
+
+/// A day of the calendar as ISO 8601 writes it.
+fn date(text: &str) -> Result<String, String> {
+    tumble_io::is_iso_date(text)
+        .then(|| text.to_owned())
+        .ok_or_else(|| "give a day as YYYY-MM-DD, for instance 2026-11-23".into())
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -366,4 +407,49 @@ pub(crate) struct CompensateArgs {
     /// No remarks on standard error.
     #[arg(long)]
     pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  tumble explain T0205
+  tumble explain t205 312        # several; case and leading T0 do not matter
+  tumble explain                 # all of them, a line each
+  tumble explain --markdown > findings.md")]
+pub(crate) struct ExplainArgs {
+    /// Ids of findings, for instance T0205; without one all are listed.
+    #[arg(value_name = "ID")]
+    pub(crate) ids: Vec<String>,
+    /// Print the page of all findings in Markdown.
+    #[arg(long, conflicts_with_all = ["ids", "json"])]
+    pub(crate) markdown: bool,
+    /// Print JSON: a list of findings with their texts.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  tumble completions bash > ~/.local/share/bash-completion/completions/tumble
+  tumble completions fish > ~/.config/fish/completions/tumble.fish
+  tumble completions zsh > ~/.zfunc/_tumble   # ~/.zfunc stands in $fpath")]
+pub(crate) struct CompletionsArgs {
+    /// The shell.
+    #[arg(value_enum)]
+    pub(crate) shell: clap_complete::Shell,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  tumble man | man -l -
+  tumble man --out ~/.local/share/man/man1")]
+pub(crate) struct ManArgs {
+    /// Write tumble.1 and a page a command into this folder; other files stay.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Overwrite pages of the same names that differ.
+    #[arg(long, requires = "out")]
+    pub(crate) replace: bool,
 }

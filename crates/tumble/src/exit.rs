@@ -89,3 +89,16 @@ impl From<Exit> for ExitCode {
 pub(crate) fn complain(message: impl std::fmt::Display) {
     eprintln!("tumble: {message}");
 }
+
+/// Prints data on standard output. A reader that closed early (`| head`) has what it wanted.
+pub(crate) fn deliver(text: &str) -> Exit {
+    use std::io::Write as _;
+    let mut stdout = std::io::stdout().lock();
+    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
+            complain(format!("standard output: {}", tumble_io::advice(&e)));
+            Exit::Failure
+        }
+        _ => Exit::Ok,
+    }
+}

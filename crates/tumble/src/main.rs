@@ -3,14 +3,14 @@
 mod cli;
 mod commands;
 mod exit;
+#[cfg(test)]
+mod help_tests;
 mod interrupt;
 mod progress;
 mod quantity;
 
-use clap::Parser as _;
-
 fn main() -> std::process::ExitCode {
-    let arguments = cli::Cli::parse();
+    let arguments = cli::parse();
     interrupt::install();
     let code = match arguments.command {
         cli::Command::Init(a) => commands::init::run(&a),
@@ -18,6 +18,9 @@ fn main() -> std::process::ExitCode {
         cli::Command::Certify(a) => commands::certify::run(&a),
         cli::Command::Simulate(a) => commands::simulate::run(&a),
         cli::Command::Compensate(a) => commands::compensate::run(&a),
+        cli::Command::Explain(a) => commands::explain::run(&a),
+        cli::Command::Completions(a) => commands::completions::run(&a),
+        cli::Command::Man(a) => commands::man::run(&a),
     };
     code.into()
 }

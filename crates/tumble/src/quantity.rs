@@ -36,7 +36,9 @@ fn split(text: &str) -> Result<(f64, &str), String> {
             });
         }
     }
-    Err(format!("`{text}` does not start with a number"))
+    Err(format!(
+        "`{text}` does not start with a number; give one with its unit, for instance 3arcmin or 8mg"
+    ))
 }
 
 const UNITS: [&str; 20] = [

@@ -273,3 +273,164 @@ fn dwells_at_the_converters_ends_are_bounds_for_the_likelihood() {
     assert_eq!(positions(&bounds), 41);
     assert!(positions(&averages) < 30);
 }
+
+#[test]
+fn findings_are_explained_by_id_by_list_as_page_and_as_json() {
+    let dir = tempfile::tempdir().unwrap();
+    let explain = |args: &[&str]| tumble(dir.path(), &[&["explain"], args].concat());
+    let one = explain(&["T0205"]);
+    assert_eq!((code(&one), err(&one).as_str()), (0, ""));
+    assert!(out(&one).starts_with("T0205  warning  two parameters are hard to tell apart\n"));
+    for typed in ["t205", "205", "t0205"] {
+        assert_eq!(out(&explain(&[typed])), out(&one), "{typed}");
+    }
+    let two = out(&explain(&["205", "T0107"]));
+    assert!(two.contains("T0205  warning") && two.contains("\nT0107  rejects"), "{two}");
+    let all = out(&explain(&[]));
+    for kind in tumble_core::FindingKind::ALL {
+        assert!(all.contains(&format!("{}  ", kind.id())) && all.contains(kind.title()));
+    }
+    let wrong = explain(&["T0131"]);
+    assert_eq!((code(&wrong), out(&wrong).as_str()), (2, ""));
+    assert!(
+        err(&wrong).contains("no finding has the id `T0131`") && err(&wrong).contains("T0130"),
+        "{}",
+        err(&wrong)
+    );
+    let json: serde_json::Value =
+        serde_json::from_slice(&explain(&["205", "--json"]).stdout).unwrap();
+    assert_eq!(json[0]["id"], "T0205");
+    for field in ["severity", "title", "means", "why", "todo", "verdict", "source"] {
+        assert!(json[0][field].as_str().is_some_and(|t| !t.is_empty()), "{field}");
+    }
+    let json: serde_json::Value = serde_json::from_slice(&explain(&["--json"]).stdout).unwrap();
+    assert_eq!(json.as_array().unwrap().len(), tumble_core::FindingKind::ALL.len());
+}
+
+/// `TUMBLE_BLESS=1` writes the page anew.
+#[test]
+fn the_page_of_findings_is_what_the_code_says() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/findings.md");
+    let written = out(&tumble(Path::new("."), &["explain", "--markdown"]));
+    if std::env::var_os("TUMBLE_BLESS").is_some() {
+        std::fs::write(&page, &written).unwrap();
+    }
+    let there = std::fs::read_to_string(&page).unwrap_or_default();
+    assert!(
+        there == written,
+        "docs/findings.md is not what the code says; TUMBLE_BLESS=1 cargo test -p tumble writes it"
+    );
+}
+
+#[test]
+fn without_a_command_there_are_first_steps() {
+    let o = tumble(Path::new("."), &[]);
+    assert_eq!((code(&o), out(&o).as_str()), (2, ""));
+    assert!(err(&o).contains("First steps:") && err(&o).contains("tumble certify"), "{}", err(&o));
+}
+
+#[test]
+fn completions_for_every_shell() {
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let o = tumble(Path::new("."), &["completions", shell]);
+        assert_eq!((code(&o), err(&o).as_str()), (0, ""), "{shell}");
+        for word in ["certify", "explain", "--issued"] {
+            let word = if shell == "fish" { word.trim_start_matches('-') } else { word };
+            assert!(out(&o).contains(word), "{shell}: {word}");
+        }
+    }
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("tumble.bash");
+    std::fs::write(&file, tumble(dir.path(), &["completions", "bash"]).stdout).unwrap();
+    match Command::new("bash").arg("-n").arg(&file).output() {
+        Ok(o) => assert!(o.status.success(), "{}", err(&o)),
+        Err(e) => eprintln!("bash -n was not run: {e}"),
+    }
+}
+
+#[test]
+fn manual_pages_are_written_beside_those_of_others() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    std::fs::create_dir(at.join("man1")).unwrap();
+    std::fs::write(at.join("man1/other.1"), "not ours").unwrap();
+    let first = tumble(at, &["man", "--out", "man1"]);
+    assert_eq!((code(&first), out(&first).as_str()), (0, ""), "{}", err(&first));
+    let read = |f: &str| std::fs::read_to_string(at.join("man1").join(f)).unwrap();
+    assert_eq!(read("other.1"), "not ours");
+    assert_eq!(read("tumble.1"), out(&tumble(at, &["man"])));
+    assert!(read("tumble-certify.1").contains("Examples:"));
+    let again = tumble(at, &["man", "--out", "man1"]);
+    assert!(code(&again) == 0 && err(&again).contains("wrote 0 of"), "{}", err(&again));
+    std::fs::write(at.join("man1/tumble-certify.1"), "somebody's own").unwrap();
+    std::fs::remove_file(at.join("man1/tumble.1")).unwrap();
+    let refused = tumble(at, &["man", "--out", "man1"]);
+    assert!(code(&refused) == 2 && err(&refused).contains("--replace"), "{}", err(&refused));
+    assert!(!at.join("man1/tumble.1").exists(), "all or nothing");
+    assert_eq!(read("tumble-certify.1"), "somebody's own");
+    assert_eq!(code(&tumble(at, &["man", "--out", "man1", "--replace"])), 0);
+    assert!(read("tumble-certify.1").contains("Examples:"));
+}
+
+#[test]
+fn errors_say_what_where_and_one_thing_to_do() {
+    let dir = demo(&["--seed", "3"]);
+    let at = dir.path();
+    let toml = std::fs::read_to_string(at.join("demo/experiment.toml")).unwrap();
+    let with = |from: &str, to: &str| {
+        assert!(toml.contains(from), "{from}");
+        std::fs::write(at.join("demo/experiment.toml"), toml.replace(from, to)).unwrap();
+        let o = tumble(at, &["certify", "demo"]);
+        assert_eq!((code(&o), out(&o).as_str()), (2, ""), "{to}: {}", err(&o));
+        err(&o)
+    };
+    for (from, to, told) in [
+        (
+            "\"run-1.csv\"",
+            "\"run1.csv\"",
+            "run1.csv: there is no such file; did you mean `run-1.csv`",
+        ),
+        ("\"run-1.csv\"", "\"photo.jpg\"", "photo.jpg: there is no such file; is the name right"),
+        ("gravity = 9.81", "gravity = 9,81", "write gravity = 9.81"),
+        ("\"run-1.csv\"", "\"C:\\data\\run-1.csv\"", "write file = \"C:/data/run-1.csv\""),
+        ("\"run-1.csv\"", "\"data\\run-1.csv\"", "/ between folders"),
+        ("\"run-1.csv\"", "'data\\run-1.csv'", "has backslashes; write / between folders"),
+        ("format = 1", "format = 1\nissued = \"soon\"", "YYYY-MM-DD"),
+    ] {
+        let text = with(from, to);
+        assert!(text.contains(told) && !text.contains("os error"), "{text}");
+    }
+    let o = tumble(at, &["compensate", "demo"]);
+    assert_eq!(code(&o), 2);
+    assert!(
+        err(&o).contains("demo: it is a folder where a file should be; name a file in it"),
+        "{}",
+        err(&o)
+    );
+    let o = tumble(at, &["compensate", "demo/truth.tml"]);
+    assert!(err(&o).contains("did you mean `truth.toml`"), "{}", err(&o));
+    let o = tumble(at, &["simulate", "x", "--dwell", "-1"]);
+    assert!(code(&o) == 2 && err(&o).contains("give a positive number"), "{}", err(&o));
+}
+
+/// What a reader without colours misses is nothing: there are none. Verdict, severities and ids are words.
+#[test]
+fn data_on_standard_output_have_no_colour() {
+    let dir = demo(&["--seed", "3", "--runs", "1"]);
+    for (args, word) in [
+        (&["certify", "demo"][..], "INDETERMINATE"),
+        (&["explain"], "rejects"),
+        (&["explain", "T0205"], "warning"),
+    ] {
+        let o = Command::new(env!("CARGO_BIN_EXE_tumble"))
+            .args(args)
+            .current_dir(dir.path())
+            .env("CLICOLOR_FORCE", "1")
+            .env_remove("NO_COLOR")
+            .output()
+            .unwrap();
+        let text = out(&o);
+        assert!(text.contains(word) && !text.contains('\u{1b}'), "{args:?}: {text}");
+        assert!(text.lines().all(|l| l.chars().count() <= 80), "{args:?}: {text}");
+    }
+}

@@ -7,7 +7,7 @@ use crate::term::{TermTest, test_term};
 use crate::{Finding, FindingKind};
 
 /// Significance at which an influence is worth a warning: one false alarm in a thousand, as for structure.
-const SIGNIFICANCE: f64 = 0.001;
+pub(crate) const SIGNIFICANCE: f64 = 0.001;
 
 /// What was tested, and what could not be.
 #[derive(Debug, Clone, Default, PartialEq)]

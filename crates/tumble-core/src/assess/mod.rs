@@ -14,6 +14,10 @@ pub use repeat::repeated_share;
 pub use result::{BudgetLine, CompensationResult, compensation_result};
 pub use verdict::{Verdict, may_carry_result, verdict};
 
+pub(crate) use influence::SIGNIFICANCE as INFLUENCE_SIGNIFICANCE;
+pub(crate) use repeat::LIMIT as REPEAT_LIMIT;
+pub(crate) use verdict::for_want_of_runs;
+
 use crate::estimate::{
     Estimate, EstimateOptions, Residual, Setting, Weights, determines_all, estimate,
 };

@@ -7,7 +7,7 @@ use super::RunAssessment;
 use crate::{Finding, FindingKind};
 
 /// Significance of "they repeat", in standard deviations of the correlation: one false alarm in two thousand.
-const LIMIT: f64 = 3.3;
+pub(crate) const LIMIT: f64 = 3.3;
 
 /// Share `ρ` of the positions' variance that all runs have in common: mean correlation of their residuals at the same
 /// positions. `None` where the runs have different plans, or the correlation is not significant.

@@ -38,7 +38,10 @@ pub fn verdict(findings: &[Finding]) -> Verdict {
 /// Whether coefficients may be given: accepted, or indeterminate for want of runs alone.
 #[must_use]
 pub fn may_carry_result(findings: &[Finding]) -> bool {
-    let for_want_of_runs =
-        |f: &Finding| matches!(f.kind, FindingKind::OneRun | FindingKind::RunsTooFew);
-    findings.iter().all(|f| f.kind.severity() < Severity::Missing || for_want_of_runs(f))
+    findings.iter().all(|f| f.kind.severity() < Severity::Missing || for_want_of_runs(f.kind))
+}
+
+/// Whether a kind asks for more runs and nothing else.
+pub(crate) fn for_want_of_runs(kind: FindingKind) -> bool {
+    matches!(kind, FindingKind::OneRun | FindingKind::RunsTooFew)
 }

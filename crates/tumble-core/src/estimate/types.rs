@@ -90,6 +90,31 @@ impl Parameter {
         }
     }
 
+    /// An uncertainty of this parameter for people: m/s², mrad or ppm, three digits.
+    ///
+    /// ```
+    /// use tumble_core::estimate::Parameter;
+    /// assert_eq!(Parameter::ScaleError.shown(0.02576), "25800 ppm");
+    /// assert_eq!(Parameter::Misalignment.shown(0.003), "3.00 mrad");
+    /// assert_eq!(Parameter::Bias.shown(0.0347), "0.0347 m/s²");
+    /// ```
+    #[must_use]
+    pub fn shown(self, value: f64) -> String {
+        let (factor, unit) = match self {
+            Self::Bias => (1.0, "m/s²"),
+            Self::Misalignment => (1e3, "mrad"),
+            Self::ScaleError => (1e6, "ppm"),
+        };
+        let v = value * factor;
+        let size = v.abs().log10().floor();
+        if !(-4.0..=5.0).contains(&size) {
+            // Zero, nothing finite, or too large to read without a power of ten.
+            return format!("{v:.2e} {unit}");
+        }
+        let step = 10f64.powf(size - 2.0);
+        format!("{:.*} {unit}", (2.0 - size).max(0.0) as usize, (v / step).round() * step)
+    }
+
     /// Index in vectors and matrices.
     #[must_use]
     pub fn index(self) -> usize {

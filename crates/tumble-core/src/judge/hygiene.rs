@@ -3,7 +3,7 @@
 use crate::{Bench, Code, Finding, FindingKind, Output, Position, Readings, Run};
 
 /// Movement of the angle, in LSB's worth, during which a converter must not keep its code.
-const STUCK_LIMIT_LSB: f64 = 2.0;
+pub(crate) const STUCK_LIMIT_LSB: f64 = 2.0;
 
 /// What is done with dwells that touch the converter's ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -9,7 +9,7 @@ use crate::{Finding, FindingKind, Targets};
 
 /// Condition number (unit columns) from which the correlation is worth a warning. The best plans of a table
 /// that reaches ±60° have 5 to 11; the paper's own has 48.
-const CONDITION_WARNING: f64 = 30.0;
+pub(crate) const CONDITION_WARNING: f64 = 30.0;
 
 /// What the number of angles of a run allows.
 #[must_use]
@@ -142,13 +142,12 @@ pub fn determined_result(
             None => p.parameter.words().to_owned(),
         };
         let observed = format!(
-            "expanded uncertainty {:.3e} {} ({:.0} %, k = {:.2})",
-            p.expanded_uncertainty,
-            p.parameter.unit(),
+            "expanded uncertainty {} ({:.0} %, k = {:.2})",
+            p.parameter.shown(p.expanded_uncertainty),
             level * 100.0,
             p.coverage_factor
         );
-        let limit = format!("target {target:.3e} {}", p.parameter.unit());
+        let limit = format!("target {}", p.parameter.shown(target));
         let by_budget = p.u_budget * p.coverage_factor > target;
         findings.push(if by_budget {
             Finding {

@@ -17,3 +17,20 @@ pub use reproducible::reproducible;
 pub use settled::settled;
 pub use structure::{Structure, structure};
 pub use table::{noise, slow_noise, table};
+
+/// Thresholds that the explanations name, so that text and judgement cannot drift apart.
+pub(crate) mod limits {
+    pub(crate) use super::hygiene::STUCK_LIMIT_LSB;
+    pub(crate) use super::identifiable::CONDITION_WARNING;
+    pub(crate) use super::plausible::{
+        BIAS_UNUSUAL_M_S2, MISALIGNMENT_LIMIT_RAD, MISALIGNMENT_UNUSUAL_RAD, SCALE_ERROR_LIMIT,
+        SCALE_ERROR_UNUSUAL, UNITS_RATIO,
+    };
+    pub(crate) use super::reproducible::FEW;
+    pub(crate) use super::settled::STEP_LIMIT;
+    pub(crate) use super::structure::{MATERIAL_SHARE, SIGNIFICANCE as STRUCTURE_SIGNIFICANCE};
+    pub(crate) use super::table::{
+        HOPELESS_DEG, LITTLE_DITHER_LSB2, NOTEWORTHY_FACTOR, SIGNIFICANCE as TABLE_SIGNIFICANCE,
+        SLOW_NOISE,
+    };
+}

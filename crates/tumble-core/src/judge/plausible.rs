@@ -8,17 +8,17 @@ use crate::{Finding, FindingKind};
 
 /// Scale error beyond which the nominal scale belongs to another sensor, range or unit. Data sheets state ±4 to
 /// ±8 %; half or twice is another range.
-const SCALE_ERROR_LIMIT: f64 = 0.5;
+pub(crate) const SCALE_ERROR_LIMIT: f64 = 0.5;
 /// Scale error that is unusual.
-const SCALE_ERROR_UNUSUAL: f64 = 0.1;
+pub(crate) const SCALE_ERROR_UNUSUAL: f64 = 0.1;
 /// Misalignment that no seat has (20°).
-const MISALIGNMENT_LIMIT_RAD: f64 = 0.35;
+pub(crate) const MISALIGNMENT_LIMIT_RAD: f64 = 0.35;
 /// Misalignment that is unusual (6°).
-const MISALIGNMENT_UNUSUAL_RAD: f64 = 0.1;
+pub(crate) const MISALIGNMENT_UNUSUAL_RAD: f64 = 0.1;
 /// Bias that is unusual: 100 mg, past the zero-g limits of data sheets (25 to 250 mg).
-const BIAS_UNUSUAL_M_S2: f64 = 1.0;
+pub(crate) const BIAS_UNUSUAL_M_S2: f64 = 1.0;
 /// Scale over nominal scale that means g for m/s²: 9.8, with room for a sensor's own scale error.
-const UNITS_RATIO: std::ops::Range<f64> = 8.5..11.5;
+pub(crate) const UNITS_RATIO: std::ops::Range<f64> = 8.5..11.5;
 
 /// What a run's estimates look like beside what is possible.
 #[must_use]

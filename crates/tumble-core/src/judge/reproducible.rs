@@ -4,7 +4,7 @@ use crate::assess::PooledParameter;
 use crate::{Finding, FindingKind, Run};
 
 /// Runs below which intervals are dominated by the Student factor.
-const FEW: usize = 4;
+pub(crate) const FEW: usize = 4;
 
 /// What the number and the agreement of the runs say.
 #[must_use]

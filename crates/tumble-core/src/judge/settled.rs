@@ -5,7 +5,7 @@ use crate::{Finding, FindingKind};
 
 /// Largest step in standard deviations. With the hundred-odd steps of 60 positions chance alone passes five in
 /// one run of a thousand.
-const STEP_LIMIT: f64 = 5.0;
+pub(crate) const STEP_LIMIT: f64 = 5.0;
 
 /// Whether the estimate moved more, late in the run, than chance allows.
 #[must_use]

@@ -5,10 +5,10 @@ use crate::term::{TermTest, test_term};
 use crate::{Finding, FindingKind};
 
 /// Significance at which a left-over curvature counts.
-const SIGNIFICANCE: f64 = 0.001;
+pub(crate) const SIGNIFICANCE: f64 = 0.001;
 /// Peak of a significant curvature, over the scatter of the positions, below which it only warns. With 60
 /// positions nothing smaller than 0.9 becomes significant; with thousands, curvature far below the scatter does.
-const MATERIAL_SHARE: f64 = 0.5;
+pub(crate) const MATERIAL_SHARE: f64 = 0.5;
 
 /// Curvature left over in the residuals of all runs together.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,9 +62,9 @@ pub fn structure(
             observed: format!("{name}, {:.2} LSB at its peak, p = {:.1e}", t.peak_lsb, t.p_value),
             limit: format!("p ≥ {threshold:.1e} (scatter of the positions {scatter:.2} LSB)"),
             remedy: if name == "cubic" {
-                "the sensor's K3, or the dial's eccentricity or scale: check the table with another sensor, restrict the range, or fit K3".into()
+                "the sensor's K3, or the dial's eccentricity or scale: check the table with another sensor, or restrict the range".into()
             } else {
-                "the sensor's K2, or a table angle that is wrong at one end: check the angles, restrict the range, or fit K2".into()
+                "the sensor's K2, or a table angle that is wrong at one end: check the angles, or restrict the range".into()
             },
         })
         .into_iter()

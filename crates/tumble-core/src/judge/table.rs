@@ -4,14 +4,14 @@ use crate::estimate::{Estimate, Method};
 use crate::{Finding, FindingKind, Output, Position, Quantizer};
 
 /// Significance of "the table is not as good as stated". One finding in a thousand honest runs.
-const SIGNIFICANCE: f64 = 0.0005;
+pub(crate) const SIGNIFICANCE: f64 = 0.0005;
 /// Factor of scatter below which a significant disagreement is not worth a word.
-const NOTEWORTHY_FACTOR: f64 = 1.3;
+pub(crate) const NOTEWORTHY_FACTOR: f64 = 1.3;
 /// Scatter, as an angle at 0°, that no table has: the readings do not follow the angles.
-const HOPELESS_DEG: f64 = 1.0;
+pub(crate) const HOPELESS_DEG: f64 = 1.0;
 /// Variance of codes within dwells, pooled, below which averages keep a part of the quantization error:
 /// what noise of 0.3 LSB shows on average over all phases.
-const LITTLE_DITHER_LSB2: f64 = 0.2;
+pub(crate) const LITTLE_DITHER_LSB2: f64 = 0.2;
 
 /// Scatter of the positions against the stated angle uncertainty.
 #[must_use]
@@ -71,7 +71,7 @@ pub fn table(
 }
 
 /// Inflation of a mean's variance by slow noise from which it is worth a word.
-const SLOW_NOISE: f64 = 1.5;
+pub(crate) const SLOW_NOISE: f64 = 1.5;
 
 /// Noise within dwells that averaging does not reduce as it should.
 #[must_use]

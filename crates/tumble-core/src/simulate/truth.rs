@@ -101,10 +101,14 @@ pub enum TruthError {
 impl std::fmt::Display for TruthError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::NotPositive { name, value } => write!(f, "{name} = {value} must be positive"),
-            Self::NotFinite { name } => write!(f, "{name} is not a finite number"),
-            Self::Negative { name, value } => write!(f, "{name} = {value} must not be negative"),
-            Self::Empty { what } => write!(f, "nothing to simulate: no {what}"),
+            Self::NotPositive { name, value } => {
+                write!(f, "{name} = {value}; give a positive number")
+            }
+            Self::NotFinite { name } => {
+                write!(f, "{name} is infinite or no number; give a finite one")
+            }
+            Self::Negative { name, value } => write!(f, "{name} = {value}; give zero or more"),
+            Self::Empty { what } => write!(f, "nothing to simulate: no {what}; give at least one"),
             Self::TooLarge { samples, limit } => {
                 write!(
                     f,

@@ -128,7 +128,7 @@ fn read_lines<R: std::io::Read>(
     };
     if dwells.is_empty() {
         let what = if options.rows.is_empty() {
-            "no rows under the header"
+            "no rows under the header; export the record again, with its readings"
         } else {
             "no row holds what `rows` asks for; correct `rows` in experiment.toml"
         };

@@ -10,6 +10,7 @@ use tumble_core::{
     Sensor, VerticalPair,
 };
 
+use crate::advice::with_similar_names;
 use crate::csv::{Dialect, Discard, Dwell, Mapping, RunFileOptions, read_run_file};
 use crate::error::{Place, Problem, ReadError};
 use crate::experiment_file::{
@@ -86,6 +87,10 @@ pub(crate) fn read_described(
     if let Some(format) = file.format.filter(|f| *f != 1) {
         return Err(value("format", format, "1: this is a file of a newer version"));
     }
+    let issued = file.issued.as_ref().map(experiment_file::date_text);
+    if let Some(day) = issued.as_ref().filter(|d| !crate::is_iso_date(d)) {
+        return Err(value("issued", day, "a day as YYYY-MM-DD, for instance 2026-11-23"));
+    }
     let output = output(&file.output)?;
     let bench = bench(&file.bench)?;
     let names = run_names(&file.run)?;
@@ -137,7 +142,7 @@ pub(crate) fn read_described(
             targets: targets(&file)?,
         },
         id: file.id.clone(),
-        issued: file.issued.as_ref().map(experiment_file::date_text),
+        issued,
         inputs,
         findings,
         remarks: file
@@ -207,6 +212,12 @@ impl Reader<'_> {
             place: Place::file(EXPERIMENT_FILE),
             problem: Problem::OutsideFolder { path: file.to_owned() },
         };
+        if file.contains(char::is_control) {
+            // "data\run-1.csv" is legal TOML with a carriage return in it.
+            let expected =
+                "a path with / between folders: between \" \" a backslash makes control characters";
+            return Err(value("file", crate::error::visible(file), expected));
+        }
         let relative = Path::new(file);
         let plain =
             relative.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
@@ -214,7 +225,10 @@ impl Reader<'_> {
             return Err(outside());
         }
         let path = self.folder.join(relative);
-        let io = |e| ReadError { place: Place::file(file), problem: Problem::Io(e) };
+        let io = |e| ReadError {
+            place: Place::file(file),
+            problem: Problem::Io(with_similar_names(e, &path)),
+        };
         let real = path.canonicalize().map_err(io)?;
         let root = self.folder.canonicalize().map_err(io)?;
         if real.starts_with(root) { Ok(path) } else { Err(outside()) }

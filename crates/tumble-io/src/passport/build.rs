@@ -7,7 +7,7 @@ use tumble_core::estimate::{
 use tumble_core::linalg::Matrix;
 use tumble_core::term::TermTest;
 use tumble_core::{
-    ARCMIN_RAD, Experiment, GravitySource, NominalScaleSource, Quantizer, QuantizerOffset, Severity,
+    ARCMIN_RAD, Experiment, GravitySource, NominalScaleSource, Quantizer, QuantizerOffset,
 };
 
 use super::types as wire;
@@ -126,13 +126,7 @@ pub(crate) fn quantizer_name(quantizer: Quantizer) -> &'static str {
 fn finding(f: &tumble_core::Finding) -> wire::Finding {
     wire::Finding {
         id: f.kind.id().into(),
-        severity: match f.kind.severity() {
-            Severity::Note => "note",
-            Severity::Warning => "warning",
-            Severity::Missing => "missing",
-            Severity::Reject => "reject",
-        }
-        .into(),
+        severity: f.kind.severity().name().into(),
         title: f.kind.title().into(),
         place: f.place.clone(),
         observed: f.observed.clone(),

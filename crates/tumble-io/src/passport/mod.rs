@@ -54,7 +54,11 @@ pub enum PassportError {
 impl std::fmt::Display for PassportError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Json(e) => write!(f, "not a passport: {}", crate::error::visible(&e.to_string())),
+            Self::Json(e) => write!(
+                f,
+                "not a passport ({}); give the passport.json that `tumble certify FOLDER --out DIR` wrote",
+                crate::error::visible(&e.to_string())
+            ),
             Self::Schema { seen } => write!(
                 f,
                 "schema `{}` is not `{SCHEMA}`; use the version of tumble that wrote it",

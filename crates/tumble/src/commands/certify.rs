@@ -110,7 +110,7 @@ fn deliver(
         (_, false, false) => Ok(tumble_report::summary(passport)),
     };
     match text {
-        Ok(text) if super::print(&text) == Exit::Ok => {}
+        Ok(text) if crate::exit::deliver(&text) == Exit::Ok => {}
         Ok(_) => return Exit::Failure,
         Err(e) => {
             complain(e);

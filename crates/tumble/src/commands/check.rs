@@ -2,9 +2,8 @@
 
 use tumble_io::check;
 
-use super::print;
 use crate::cli::CheckArgs;
-use crate::exit::{Exit, complain};
+use crate::exit::{Exit, complain, deliver};
 use crate::progress::Progress;
 
 pub(crate) fn run(args: &CheckArgs) -> Exit {
@@ -29,5 +28,5 @@ pub(crate) fn run(args: &CheckArgs) -> Exit {
     } else {
         tumble_report::check_table(&checked)
     };
-    print(&text)
+    deliver(&text)
 }

@@ -4,7 +4,9 @@ use std::io::{self, Read, Write};
 
 use tumble_core::{Compensator, Quantizer};
 use tumble_io::passport::Passport;
-use tumble_io::{CodeStream, CompensationRefused, Proof, ReadError, compensator, open_text};
+use tumble_io::{
+    CodeStream, CompensationRefused, Proof, ReadError, advice, advice_at, compensator, open_text,
+};
 
 use crate::cli::CompensateArgs;
 use crate::exit::{Exit, complain};
@@ -43,7 +45,7 @@ pub(crate) fn run(args: &CompensateArgs) -> Exit {
         }
         Err(StreamError::Write(e)) if e.kind() == io::ErrorKind::BrokenPipe => Exit::Ok,
         Err(StreamError::Write(e)) => {
-            complain(e);
+            complain(format!("standard output: {}", advice(&e)));
             Exit::Failure
         }
     }
@@ -52,7 +54,7 @@ pub(crate) fn run(args: &CompensateArgs) -> Exit {
 fn load(args: &CompensateArgs) -> Result<Compensator, (String, Exit)> {
     let name = args.passport.display();
     let text = std::fs::read_to_string(&args.passport)
-        .map_err(|e| (format!("{name}: {e}"), Exit::Usage))?;
+        .map_err(|e| (format!("{name}: {}", advice_at(e, &args.passport)), Exit::Usage))?;
     let passport = Passport::from_json(&text).map_err(|e| (format!("{name}: {e}"), Exit::Usage))?;
     let proof = if args.unproven { Proof::Waived } else { Proof::Required };
     compensator(&passport, proof).map_err(|e| {

@@ -4,9 +4,8 @@ use std::path::Path;
 
 use tumble_io::{Existing, InitFacts, draft_experiment, experiment_file, write_file};
 
-use super::print;
 use crate::cli::InitArgs;
-use crate::exit::{Exit, complain};
+use crate::exit::{Exit, complain, deliver};
 use crate::interrupt;
 use crate::progress::Progress;
 
@@ -31,7 +30,7 @@ pub(crate) fn run(args: &InitArgs) -> Exit {
         }
     };
     if args.print {
-        return print(&draft.toml);
+        return deliver(&draft.toml);
     }
     let target = experiment_file(&draft.folder);
     let existing = if args.replace { Existing::Replace } else { Existing::Keep };
@@ -46,7 +45,7 @@ pub(crate) fn run(args: &InitArgs) -> Exit {
     if args.quiet {
         return Exit::Ok;
     }
-    let printed = print(&tumble_report::init_summary(&draft));
+    let printed = deliver(&tumble_report::init_summary(&draft));
     if let Some(kept) = kept {
         eprintln!("the old experiment.toml is now {}", kept.display());
     }
