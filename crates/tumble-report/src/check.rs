@@ -6,6 +6,7 @@ use tumble_io::{Check, CheckedDwell, CheckedRun, InitDraft};
 
 use crate::numbers::significant;
 use crate::sanitize::clean_text as plain;
+use crate::summary::sensor;
 use crate::words::{counted, shortened, wrapped};
 
 const WIDTH: usize = 80;
@@ -17,10 +18,8 @@ const LISTED: usize = 400;
 pub fn check_table(check: &Check) -> String {
     let mut out = String::new();
     let [model, serial, axis] = &check.sensor;
-    let said = |text: &str| {
-        if text.is_empty() { "(not stated)".to_owned() } else { shortened(&plain(text), 24) }
-    };
-    let _ = writeln!(out, "sensor   {}, serial {}, axis {}", said(model), said(serial), said(axis));
+    let [model, serial, axis] = [plain(model), plain(serial), plain(axis)];
+    let _ = writeln!(out, "sensor   {}", sensor([&model, &serial, &axis]));
     let ends = match check.ends {
         [None, None] => String::new(),
         [lo, hi] => format!(

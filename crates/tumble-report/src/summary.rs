@@ -49,14 +49,19 @@ fn row(out: &mut String, name: &str, value: &str) {
     let _ = writeln!(out, "  {name:<width$}{value}", width = VALUES - 2);
 }
 
+/// Model, serial and axis in one line; what nobody said is said to be missing.
+pub(crate) fn sensor([model, serial, axis]: [&str; 3]) -> String {
+    let said = |text: &str, longest| {
+        if text.trim().is_empty() { "not stated".into() } else { shortened(text, longest) }
+    };
+    if [model, serial, axis].iter().all(|t| t.trim().is_empty()) {
+        return "not stated: write model, serial and axis into [sensor]".into();
+    }
+    format!("{}, serial {}, axis {}", said(model, 24), said(serial, 24), said(axis, 8))
+}
+
 fn subject(out: &mut String, p: &Passport) {
-    let sensor = format!(
-        "{}, serial {}, axis {}",
-        shortened(&p.sensor.model, 24),
-        shortened(&p.sensor.serial, 24),
-        shortened(&p.sensor.axis, 8)
-    );
-    row(out, "sensor", &sensor);
+    row(out, "sensor", &sensor([&p.sensor.model, &p.sensor.serial, &p.sensor.axis]));
     let positions: Vec<usize> = p.runs.iter().map(|r| r.positions).collect();
     let each = match (positions.iter().min(), positions.iter().max()) {
         (Some(a), Some(b)) if a == b => format!(" of {}", counted(*a, "position")),

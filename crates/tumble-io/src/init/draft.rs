@@ -125,7 +125,7 @@ fn write_line(out: &mut String, l: &Line) {
     // Writing into a String cannot fail.
     let _ = if l.why.is_empty() {
         writeln!(out, "{text}")
-    } else if text.contains('\n') || text.chars().count() > 44 {
+    } else if text.contains('\n') || text.chars().count().max(36) + l.why.chars().count() > 96 {
         writeln!(out, "# {mark}{}\n{text}", l.why)
     } else {
         writeln!(out, "{text:<36} # {mark}{}", l.why)
