@@ -126,6 +126,7 @@ pub fn assess(
     for (run, candidates) in adjusted_runs(experiment) {
         runs.push(assess_run(experiment, &setting, options, &run, candidates, &mut findings));
     }
+    judge::some_runs_reversed(&mut findings, &experiment.runs);
 
     let pooled = pool(&runs, gravity, options.level);
     let contradicted = findings.iter().any(|f| f.kind.severity() == crate::Severity::Reject);
@@ -229,14 +230,24 @@ fn assess_run(
         }
         _ => judge::Censored::LeftOut,
     };
-    let usable = judge::usable_positions(run, candidates, &experiment.output, bench, k0, censored);
+    let output = &experiment.output;
+    let usable = judge::usable_positions(run, candidates.clone(), output, bench, k0, censored);
+    let hygiene = judge::data_hygiene(&run.name, &candidates, output, bench, &usable.findings);
     findings.extend(usable.findings);
+    findings.extend(hygiene);
     let positions = usable.positions;
-    findings.extend(judge::noise(&run.name, &positions, &experiment.output, options.method));
+    findings.extend(judge::noise(&run.name, &positions, output, options.method));
     let estimate = adjust(&run.name, &positions, setting, options, findings);
     if let Some(e) = &estimate {
         findings.extend(judge::few_angles(&run.name, e));
-        findings.extend(judge::plausible(&run.name, e, options.method, g, options.level));
+        findings.extend(judge::plausible(
+            &run.name,
+            e,
+            options.method,
+            g,
+            options.level,
+            (output, k0),
+        ));
         let stated = bench.angle_uncertainty.map(crate::Angle::arcmin);
         findings.extend(judge::table(&run.name, e, stated, g / k0));
         findings.extend(judge::determined_run(&run.name, e));

@@ -3,8 +3,9 @@
 //! Only the physically impossible rejects; the unusual warns. Limits of a sensor's type come with the
 //! catalogue, not from here.
 
+use super::unit::unit_is_not_the_scales;
 use crate::estimate::{Estimate, Method, Parameter};
-use crate::{Finding, FindingKind};
+use crate::{Finding, FindingKind, Output, Run};
 
 /// Scale error beyond which the nominal scale belongs to another sensor, range or unit. Data sheets state ±4 to
 /// ±8 %; half or twice is another range.
@@ -28,6 +29,7 @@ pub fn plausible(
     method: Method,
     gravity_m_s2: f64,
     level: f64,
+    (output, nominal_scale): (&Output, f64),
 ) -> Vec<Finding> {
     let [bias, misalignment, scale_error] = estimate.values;
     let factor = |p: Parameter| estimate.coverage_factor(p, level).unwrap_or(0.0);
@@ -66,12 +68,14 @@ pub fn plausible(
             || (dk.abs() > SCALE_ERROR_LIMIT
                 && well_known_scale(estimate, factor(Parameter::ScaleError)))
         {
-            findings.push(finding(
+            let other_unit =
+                unit_is_not_the_scales(run, ratio, nominal_scale, gravity_m_s2, output);
+            findings.push(other_unit.unwrap_or_else(|| finding(
                 FindingKind::ScaleImplausible,
                 format!("scale error {:+.1} %", dk * 100.0),
                 format!("±{:.0} %", SCALE_ERROR_LIMIT * 100.0),
-                "check nominal_scale, the sensor's range, and that the angle column holds angles in degrees",
-            ));
+                "check nominal_scale (m/s² per LSB), the sensor's range, and that the angle column holds angles in degrees",
+            )));
         } else if surely_beyond(Parameter::ScaleError, dk, SCALE_ERROR_UNUSUAL) {
             findings.push(finding(
                 FindingKind::Unusual,
@@ -116,6 +120,42 @@ pub fn plausible(
         }
     }
     findings
+}
+
+/// Where some runs are reversed and others are not, the dial counts as it should: each reversed run is told what it
+/// needs itself.
+pub fn some_runs_reversed(findings: &mut [Finding], runs: &[Run]) {
+    let reversed: Vec<&str> = findings
+        .iter()
+        .filter(|f| f.kind == FindingKind::SignReversed)
+        .map(|f| f.place.as_str())
+        .collect();
+    let against = |name: &str| reversed.contains(&name);
+    if reversed.is_empty() || runs.iter().all(|r| against(&r.name)) {
+        return;
+    }
+    let direction = |run: &Run| {
+        run.positions.iter().find_map(|p| p.record.dial.as_ref()).map(|d| d.direction.signum())
+    };
+    let of_others = runs.iter().find(|r| !against(&r.name)).and_then(direction);
+    let remedies: Vec<(String, String)> = runs
+        .iter()
+        .filter(|r| against(&r.name))
+        .map(|r| {
+            let is_turned = direction(r).zip(of_others).is_some_and(|(a, b)| a != b);
+            let remedy = if is_turned {
+                "the other runs are not reversed: take orientation = \"reversed\" out of its [[run]], or correct the sign of the angles in its file"
+            } else {
+                "the other runs are not reversed: if the body was turned by 180°, set orientation = \"reversed\" in its [[run]]; if its angles are typed with the other sign, correct them in its file"
+            };
+            (r.name.clone(), remedy.to_owned())
+        })
+        .collect();
+    for f in findings.iter_mut().filter(|f| f.kind == FindingKind::SignReversed) {
+        if let Some((_, remedy)) = remedies.iter().find(|(name, _)| *name == f.place) {
+            f.remedy.clone_from(remedy);
+        }
+    }
 }
 
 /// Whether the scale factor itself is known to a tenth, however absurd the nominal one is: a scale given upside

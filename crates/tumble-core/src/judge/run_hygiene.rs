@@ -1,0 +1,60 @@
+//! All of a run's hygiene in order: what one finding explains, the next does not name again.
+
+use super::{dwell_fit, misfit, motion, outlying, recorded, wrap, zero_rows};
+use crate::{Bench, Finding, FindingKind, Output, Position, Readings};
+
+/// Looks at the data of a run before anything is believed of them.
+///
+/// `dwells` are all of the run, in measured order; `earlier` what was found of the same run already.
+///
+/// **Model** in this order: words without their sign; zero rows; dwells that do not fit the others (leave-out fit of
+/// `1, sinφ, cosφ` to the means); dwells that moved; single samples far out; times, rows and range of the record. A
+/// dwell that is named once is not named again.
+///
+/// **Source** method section 5.
+#[must_use]
+pub fn data_hygiene(
+    run: &str,
+    dwells: &[&Position],
+    output: &Output,
+    bench: &Bench,
+    earlier: &[Finding],
+) -> Vec<Finding> {
+    let mut findings = recorded::recorded(run, dwells, output, bench);
+    let read: Vec<&Position> =
+        dwells.iter().copied().filter(|p| p.readings.samples() > 0 && usable(p, output)).collect();
+    if let Some(wraps) = wrap::codes_wrap(run, &read) {
+        // Means of wrapped codes mean nothing.
+        findings.push(wraps);
+        return findings;
+    }
+    let mut named = Vec::new();
+    if let Some((index, zeros)) = zero_rows::zero_rows(&read, output.quantizer) {
+        findings.push(zeros);
+        named.push(index);
+    }
+    let rest: Vec<&Position> =
+        (0..read.len()).filter(|i| !named.contains(i)).map(|i| read[i]).collect();
+    // What stands at the converter's end has no mean.
+    let rest: Vec<&Position> =
+        rest.into_iter().filter(|p| p.readings.censored(&output.ends) == 0).collect();
+    let fit = dwell_fit::DwellFit::of(dwell_fit::points(&rest, output.quantizer));
+    let sticks = earlier.iter().any(|f| f.kind == FindingKind::StuckConverter);
+    if let Some(fit) = fit.as_ref().filter(|_| !sticks) {
+        findings.extend(misfit::misfits(fit, &rest));
+    }
+    let scatter = fit.map(|f| f.scatter_lsb);
+    let (moved, moving) = motion::moved(run, &read, output, scatter, &named);
+    findings.extend(moved);
+    named.extend(moving);
+    findings.extend(outlying::outlying_samples(run, &read, output, &named));
+    findings
+}
+
+/// Averages at the converter's end are none; codes there are judged by the others of their dwell.
+fn usable(p: &Position, output: &Output) -> bool {
+    match p.readings {
+        Readings::Averaged { .. } => p.readings.censored(&output.ends) == 0,
+        _ => 2 * p.readings.censored(&output.ends) < p.readings.samples(),
+    }
+}
