@@ -2,9 +2,13 @@
 //! TUMBLE_LONG=1 runs more.
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // A test that cannot unwrap has failed; figures are for people.
 
+#[path = "hygiene/angles.rs"]
+mod angles;
 #[path = "hygiene/bench.rs"]
 mod bench;
-#[path = "hygiene/faults.rs"]
-mod faults;
+#[path = "hygiene/codes.rs"]
+mod codes;
 #[path = "hygiene/honest.rs"]
 mod honest;
+#[path = "hygiene/record.rs"]
+mod record;

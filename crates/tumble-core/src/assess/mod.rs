@@ -233,6 +233,8 @@ fn assess_run(
     let output = &experiment.output;
     let usable = judge::usable_positions(run, candidates.clone(), output, bench, k0, censored);
     let hygiene = judge::data_hygiene(&run.name, &candidates, output, bench, &usable.findings);
+    // Values from data that are known to be wrong are not judged: their cure is another.
+    let contradicted = hygiene.iter().any(|f| f.kind.severity() == crate::Severity::Reject);
     findings.extend(usable.findings);
     findings.extend(hygiene);
     let positions = usable.positions;
@@ -240,14 +242,16 @@ fn assess_run(
     let estimate = adjust(&run.name, &positions, setting, options, findings);
     if let Some(e) = &estimate {
         findings.extend(judge::few_angles(&run.name, e));
-        findings.extend(judge::plausible(
-            &run.name,
-            e,
-            options.method,
-            g,
-            options.level,
-            (output, k0),
-        ));
+        if !contradicted {
+            findings.extend(judge::plausible(
+                &run.name,
+                e,
+                options.method,
+                g,
+                options.level,
+                (output, k0),
+            ));
+        }
         let stated = bench.angle_uncertainty.map(crate::Angle::arcmin);
         findings.extend(judge::table(&run.name, e, stated, g / k0));
         findings.extend(judge::determined_run(&run.name, e));

@@ -325,29 +325,41 @@ impl DwellFit {
             .map(|angle| (angle, amplitude * (1.0 - argument * argument).sqrt()))
     }
 
-    /// The wrong dwells that also stick out among their neighbours, in the order of the angles and in that of time.
+    /// The wrong dwells that stick out among their neighbours in the order of the angles, and whether they do in that
+    /// of time.
     ///
-    /// A curve or a drift carries its neighbours along; a slip does not. Where half of the wrong dwells do not stick
-    /// out, the run has another fault, and none is blamed.
-    pub fn alone(&self) -> Vec<usize> {
+    /// A curve carries its neighbours along, and so does a drift; a slip does not. Where half of the wrong dwells do
+    /// not stick out, the run has another fault, and none is blamed.
+    pub fn alone(&self) -> Vec<(usize, bool)> {
         let n = self.points.len();
         let in_time: Vec<usize> = (0..n).collect();
         let mut by_angle = in_time.clone();
         by_angle.sort_by(|a, b| {
             self.points[*a].angle_rad.total_cmp(&self.points[*b].angle_rad).then(a.cmp(b))
         });
-        let residuals: Vec<f64> = (0..n).map(|i| self.residual_lsb(i)).collect();
-        let mut alone = self.wrong.clone();
-        for order in [by_angle, in_time] {
-            let steps = against_neighbours(&residuals, &order);
-            let kept = (0..n).filter(|i| !self.wrong.contains(i)).map(|i| {
-                // Beside a wrong dwell a right one sticks out too: its own residual is the better measure.
-                steps[i].abs().min(2.0 * residuals[i].abs())
-            });
-            let usual = crate::stats::root_mean_square(kept).unwrap_or(0.0).max(self.scatter_lsb);
-            alone.retain(|&i| steps[i].abs() > STICKS_OUT * usual);
+        let sticks_out = self.sticking_out(&by_angle);
+        let sticks_out_in_time = self.sticking_out(&in_time);
+        if 2 * sticks_out.len() <= self.wrong.len() {
+            return Vec::new();
         }
-        if 2 * alone.len() > self.wrong.len() { alone } else { Vec::new() }
+        // A group that moved together has edges that stick out.
+        let in_time_counts = 2 * sticks_out_in_time.len() > self.wrong.len();
+        sticks_out
+            .into_iter()
+            .map(|i| (i, in_time_counts && sticks_out_in_time.contains(&i)))
+            .collect()
+    }
+
+    /// Which of the wrong dwells differ from their neighbours in an order.
+    fn sticking_out(&self, order: &[usize]) -> Vec<usize> {
+        let residuals: Vec<f64> = (0..self.points.len()).map(|i| self.residual_lsb(i)).collect();
+        let steps = against_neighbours(&residuals, order);
+        let kept = (0..residuals.len()).filter(|i| !self.wrong.contains(i)).map(|i| {
+            // Beside a wrong dwell a right one sticks out too: its own residual is the better measure.
+            steps[i].abs().min(2.0 * residuals[i].abs())
+        });
+        let usual = crate::stats::root_mean_square(kept).unwrap_or(0.0).max(self.scatter_lsb);
+        self.wrong.iter().copied().filter(|i| steps[*i].abs() > STICKS_OUT * usual).collect()
     }
 }
 

@@ -12,10 +12,14 @@ const NEIGHBOURS: usize = 2;
 
 /// One finding a dwell that does not fit, with the angle that would, where there is one.
 pub(super) fn misfits(fit: &DwellFit, positions: &[&Position]) -> Vec<Finding> {
-    fit.alone().into_iter().filter_map(|point| misfit(fit, positions, point)).collect()
+    fit.alone()
+        .into_iter()
+        .filter_map(|(point, in_time)| misfit(fit, positions, point, in_time))
+        .collect()
 }
 
-fn misfit(fit: &DwellFit, positions: &[&Position], point: usize) -> Option<Finding> {
+/// A dwell that its neighbours in time go along with may have drifted: only a telling slip is named there.
+fn misfit(fit: &DwellFit, positions: &[&Position], point: usize, in_time: bool) -> Option<Finding> {
     let p = &fit.points[point];
     let position = positions.get(p.index)?;
     let off_lsb = fit.residual_lsb(point);
@@ -31,6 +35,9 @@ fn misfit(fit: &DwellFit, positions: &[&Position], point: usize) -> Option<Findi
         explain(&f.dial.typed, f.dial.value, [before, after], f.value, f.tolerance)
             .map(|(slip, meant)| (f, slip, meant))
     });
+    if !in_time && !slip.as_ref().is_some_and(|(_, slip, _)| slip.is_telling()) {
+        return None;
+    }
     Some(match slip {
         Some((f, slip, meant)) => Finding {
             kind: FindingKind::MistypedAngle,

@@ -1,5 +1,6 @@
 //! Dwells that moved: a drift, or two levels, in the means of a dwell's successive blocks.
 
+use super::dwell_fit::{DwellFit, points};
 use super::robust::median;
 use crate::{Finding, FindingKind, Output, Position, Quantizer, Readings, ValueMoments};
 
@@ -23,6 +24,9 @@ const CHANGE_QUIET_LSB: f64 = 1.25;
 const QUIET_LSB: f64 = 0.5;
 /// Share of a jump's squares that a trend must leave over for the jump to be the better word.
 const JUMP_BETTER: f64 = 0.8;
+/// Trend within a level, Student statistic and share of the jump, from which it is none.
+const LEVEL: f64 = 3.5;
+const LEVEL_SHARE: f64 = 0.4;
 /// A rest without movement, Student statistic.
 const AT_REST: f64 = 3.5;
 
@@ -127,7 +131,7 @@ fn motion(blocks: &[f64], limits: Limits) -> Option<Motion> {
         return None;
     }
     let rests_after = (1..=n / 2).find(|k| rests(&blocks[*k..], limits));
-    let is_jump = steps && step_left < JUMP_BETTER * drift_left && levels(blocks, at, limits);
+    let is_jump = steps && step_left < JUMP_BETTER * drift_left && levels(blocks, at, step);
     let (kind, change) = if is_jump {
         (FindingKind::DwellTwoLevels, step)
     } else {
@@ -159,13 +163,11 @@ fn two_sided(blocks: &[f64], at: usize) -> bool {
     aside(&blocks[..at], a) && aside(&blocks[at..], b)
 }
 
-/// Whether both sides of a jump rest.
-fn levels(blocks: &[f64], at: usize, limits: Limits) -> bool {
+/// Whether both sides of a jump are level: a decay is no jump, however steep.
+fn levels(blocks: &[f64], at: usize, step: f64) -> bool {
     [&blocks[..at], &blocks[at..]].into_iter().all(|part| {
         let (change, t, _) = trend(part);
-        part.len() < FEWEST_ASIDE
-            || t < SIGNIFICANT
-            || change.abs() < limits.change.max(limits.harm)
+        t < LEVEL || change.abs() < LEVEL_SHARE * step.abs()
     })
 }
 
@@ -180,16 +182,9 @@ fn rests(blocks: &[f64], limits: Limits) -> bool {
         && (step_t < SIGNIFICANT || step.abs() * shorter < 0.5 * limits.harm)
 }
 
-/// Dwells of a run that moved, one finding a kind; beside it which dwells, by their index.
-pub(super) fn moved(
-    run: &str,
-    positions: &[&Position],
-    output: &Output,
-    scatter: Option<f64>,
-    skip: &[usize],
-) -> (Vec<Finding>, Vec<usize>) {
-    let limits = Limits::of(positions, output, scatter);
-    let motions: Vec<(usize, Motion, u64)> = positions
+/// Index, movement and length of the blocks of the dwells that moved.
+fn moving(positions: &[&Position], limits: Limits, skip: &[usize]) -> Vec<(usize, Motion, u64)> {
+    positions
         .iter()
         .enumerate()
         .filter(|(i, _)| !skip.contains(i))
@@ -197,7 +192,30 @@ pub(super) fn moved(
             let (blocks, length) = block_means(&p.readings)?;
             motion(&blocks, limits).map(|m| (i, m, length))
         })
+        .collect()
+}
+
+/// Dwells of a run that moved, one finding a kind; beside it which dwells, by their index.
+pub(super) fn moved(
+    run: &str,
+    positions: &[&Position],
+    output: &Output,
+    skip: &[usize],
+) -> (Vec<Finding>, Vec<usize>) {
+    let candidates = moving(positions, Limits::of(positions, output, Some(0.0)), skip);
+    if candidates.is_empty() {
+        return (Vec::new(), Vec::new());
+    }
+    // What moved must not widen the scatter that it is held against, unless most of the run moves.
+    let few = 2 * candidates.len() < positions.len();
+    let still = |i: usize| !skip.contains(&i) && !(few && candidates.iter().any(|c| c.0 == i));
+    let others: Vec<&Position> = (0..positions.len())
+        .filter(|i| still(*i) && positions[*i].readings.censored(&output.ends) == 0)
+        .map(|i| positions[i])
         .collect();
+    let scatter = DwellFit::of(points(&others, output.quantizer)).map(|f| f.scatter_lsb);
+    let limits = Limits::of(positions, output, scatter);
+    let motions = moving(positions, limits, skip);
     let findings = [FindingKind::DwellDrifts, FindingKind::DwellTwoLevels]
         .into_iter()
         .filter_map(|kind| {

@@ -12,6 +12,8 @@ const FAR_LSB: f64 = 2.0;
 const LEAST_SPREAD_LSB: f64 = 0.3;
 /// Fewest samples whose middle says anything.
 const FEWEST: u64 = 20;
+/// Fewest samples whose middle half alone is believed.
+const FEW: u64 = 100;
 /// Robust standard deviations from which a block of real readings holds a wild one. More than of codes: slow noise
 /// moves blocks.
 const FAR_BLOCK: f64 = 12.0;
@@ -48,7 +50,9 @@ fn quantile(histogram: &CodeHistogram, share: f64) -> f64 {
 /// Standard deviation of codes as their middle tells it, LSB; `None` of too few.
 pub(super) fn code_spread(histogram: &CodeHistogram) -> Option<f64> {
     let between = |a: f64, b: f64| quantile(histogram, b) - quantile(histogram, a);
-    let middle = (between(0.25, 0.75) / 1.349).max(between(0.1, 0.9) / 2.563);
+    let half = between(0.25, 0.75) / 1.349;
+    // The middle half of few samples is a bad measure; of many it takes a quarter of wild ones.
+    let middle = if histogram.samples() < FEW { half.max(between(0.1, 0.9) / 2.563) } else { half };
     (histogram.samples() >= FEWEST).then_some(middle.max(LEAST_SPREAD_LSB))
 }
 

@@ -43,8 +43,7 @@ pub fn data_hygiene(
     if let Some(fit) = fit.as_ref().filter(|_| !sticks) {
         findings.extend(misfit::misfits(fit, &rest));
     }
-    let scatter = fit.map(|f| f.scatter_lsb);
-    let (moved, moving) = motion::moved(run, &read, output, scatter, &named);
+    let (moved, moving) = motion::moved(run, &read, output, &named);
     findings.extend(moved);
     named.extend(moving);
     findings.extend(outlying::outlying_samples(run, &read, output, &named));

@@ -20,6 +20,11 @@ pub(super) enum Slip {
 }
 
 impl Slip {
+    /// Whether few numbers are one such slip away: a fit is hardly chance.
+    pub fn is_telling(self) -> bool {
+        !matches!(self, Self::LeftOut | Self::Digit)
+    }
+
     /// For people.
     pub fn words(self) -> &'static str {
         match self {
@@ -129,7 +134,11 @@ pub(super) fn explain(
     if let Some(n) = &number {
         candidates.extend(n.transposed().map(|v| (Slip::Transposed, v)));
     }
-    candidates.extend([10.0, 0.1, 100.0, 0.01].map(|f| (Slip::Point, value * f)));
+    // A point that neither number has cannot be the slip.
+    let pointed = number.as_ref().is_some_and(|n| n.decimals > 0);
+    let moved = [10.0, 0.1, 100.0, 0.01].map(|f| value * f);
+    let has_point = |v: &f64| pointed || (v - v.round()).abs() > 1e-9;
+    candidates.extend(moved.into_iter().filter(has_point).map(|v| (Slip::Point, v)));
     if let Some(n) = &number {
         candidates.extend(n.doubled().map(|v| (Slip::Doubled, v)));
         candidates.extend(n.left_out().map(|v| (Slip::LeftOut, v)));

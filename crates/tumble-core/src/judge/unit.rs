@@ -59,18 +59,18 @@ fn near(value: f64, wanted: f64) -> bool {
 }
 
 fn real_readings(ratio: f64, found: f64, output: &Output) -> String {
-    let likely = if near(found, STANDARD_GRAVITY_M_S2 * 1e-3) {
+    let likely = if near(ratio, 1e-3) {
+        "the readings are in thousandths of the unit of nominal_scale (mV with a scale per V, mg with one per g?)"
+    } else if near(ratio, 1e3) {
+        "nominal_scale is per thousandth of the readings' unit (per mV with readings in V?)"
+    } else if near(found, STANDARD_GRAVITY_M_S2 * 1e-3) {
         "the readings look like mg (unit = \"mg\", nominal_scale = 0.00980665)"
     } else if near(found, STANDARD_GRAVITY_M_S2) {
-        "the readings look like g (unit = \"g\", nominal_scale = 9.80665)"
+        "the readings look like g (unit = \"g\", nominal_scale = 9.80665), or volts of a sensor with 1 V per g"
     } else if near(found, 1.0) {
         "the readings look like m/s² (unit = \"m/s²\", nominal_scale = 1)"
     } else if near(found, 1e-3) {
         "the readings look like mm/s² (unit = \"mm/s²\", nominal_scale = 0.001)"
-    } else if near(ratio, 1e-3) {
-        "the readings are in thousandths of the unit of nominal_scale (mV with a scale per V?)"
-    } else if near(ratio, 1e3) {
-        "nominal_scale is per thousandth of the readings' unit (per mV with readings in V?)"
     } else if output.unit == "LSB" {
         "a nominal scale per LSB does not go with real readings"
     } else {

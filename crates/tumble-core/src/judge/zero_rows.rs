@@ -2,7 +2,7 @@
 
 use super::dwell_fit::{DwellFit, points};
 use super::outlying::{outlying, usual_spread};
-use crate::{Code, Finding, FindingKind, Position, Quantizer, Readings};
+use crate::{Code, CodeHistogram, Finding, FindingKind, Position, Quantizer, Readings};
 
 /// Standard deviations of the other dwells from which zero does not fit.
 const DOES_NOT_FIT: f64 = 6.0;
@@ -48,7 +48,11 @@ fn zero_tail(p: &Position, usual: f64) -> Option<u64> {
     if far == 0 || (!known && (far < CLOSING || far < zeros)) {
         return None;
     }
-    outlying(histogram, usual)
+    // However many zeros there are: held against what else the dwell reads, and one of them is enough.
+    let mut rest = CodeHistogram::default();
+    histogram.bins().filter(|(c, _)| *c != Code(0)).for_each(|(c, k)| rest.record_many(c, k));
+    rest.record(Code(0));
+    outlying(&rest, usual)
         .is_some_and(|o| o.codes.iter().any(|(c, _)| *c == Code(0)))
         .then_some(far)
 }

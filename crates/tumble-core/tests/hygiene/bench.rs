@@ -2,7 +2,7 @@
 
 use tumble_core::assess::assess;
 use tumble_core::estimate::{EstimateOptions, Method};
-use tumble_core::simulate::{Preset, Truth, experiment, parse_plan};
+use tumble_core::simulate::{Preset, Truth, experiment, parse_plan, readings, simulate_run};
 use tumble_core::{Angle, Experiment, Finding, FindingKind, Quantizer, Readings};
 
 /// What this test is about.
@@ -94,4 +94,29 @@ pub fn all_findings(e: &Experiment) -> Vec<Finding> {
 /// What is found of the kinds above.
 pub fn findings(e: &Experiment) -> Vec<Finding> {
     all_findings(e).into_iter().filter(|f| HYGIENE.contains(&f.kind)).collect()
+}
+
+/// The experiment after something happened to its analogue samples (first run).
+pub fn disturbed(truth: &Truth, happens: impl Fn(usize, &mut Vec<f64>)) -> Experiment {
+    let mut e = recorded(truth);
+    for (i, mut simulated) in simulate_run(truth, 0).positions.into_iter().enumerate() {
+        happens(i + 1, &mut simulated.analogue_lsb);
+        let p = &mut e.runs[0].positions[i];
+        p.readings = readings(truth, &simulated);
+        p.record.rows = simulated.analogue_lsb.len() as u64;
+    }
+    e
+}
+
+/// Fails unless exactly one kind is found, once, where and as it should be.
+pub fn expect_one(name: &str, e: &Experiment, kind: FindingKind, says: [&str; 3]) {
+    let found = findings(e);
+    let ids: Vec<&str> = found.iter().map(|f| f.kind.id()).collect();
+    assert_eq!(ids, [kind.id()], "{name}: {found:#?}");
+    let f = &found[0];
+    let texts = [&f.place, &f.observed, &f.remedy];
+    for (text, word) in texts.into_iter().zip(says) {
+        assert!(text.contains(word), "{name}: `{text}` does not name `{word}`");
+    }
+    assert!(!f.limit.is_empty(), "{name}: no limit");
 }

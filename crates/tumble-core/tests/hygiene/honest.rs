@@ -9,7 +9,7 @@ use super::bench::{LSB, averaged, findings, recorded, truth};
 
 /// An honest bench: name, truth, whether its dwells come as averages.
 fn benches() -> Vec<(&'static str, Truth, bool)> {
-    use Quantizer::{Floor, None, Round, Truncate};
+    use Quantizer::{None, Round, Truncate};
     let twice = format!("{0},{0}", "-60,-40,-20,0,20,40,60");
     let noisy = |plan: &str, lsb: f64| Truth { noise_m_s2: lsb * LSB, ..truth(plan) };
     let rounding = |t: Truth, quantizer| Truth { quantizer, ..t };
