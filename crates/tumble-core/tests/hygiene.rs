@@ -8,6 +8,8 @@ mod angles;
 mod bench;
 #[path = "hygiene/codes.rs"]
 mod codes;
+#[path = "hygiene/detection.rs"]
+mod detection;
 #[path = "hygiene/honest.rs"]
 mod honest;
 #[path = "hygiene/record.rs"]

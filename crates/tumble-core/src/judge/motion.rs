@@ -1,7 +1,8 @@
 //! Dwells that moved: a drift, or two levels, in the means of a dwell's successive blocks.
 
 use super::dwell_fit::{DwellFit, points};
-use super::robust::median;
+use super::robust::{median, spread};
+use crate::stats::student_factor;
 use crate::{Finding, FindingKind, Output, Position, Quantizer, Readings, ValueMoments};
 
 /// Fewest blocks in which a movement can be told from noise.
@@ -11,9 +12,11 @@ const FEWEST_ASIDE: usize = 4;
 /// Student statistic from which a movement is real. Of 300 honest dwells with white noise one in a hundred thousand
 /// passes 6.5, the jump's place being free.
 const SIGNIFICANT: f64 = 7.0;
-/// What a movement must do to the dwell's mean, in scatters of the positions. A bias that walks scatters them too:
-/// through a run of sixty dwells eleven times as far as through one of them.
-const HARM_SCATTERS: f64 = 2.5;
+/// What a movement must do to the dwell's mean, in scatters of the positions: less is lost in them.
+const HARM_SCATTERS: f64 = 1.5;
+/// Level at which a dwell's trend must differ from no trend, in the spread of the trends of all dwells. A bias that
+/// walks gives every dwell a trend, up or down: none is singled out. Dwells that all settle alike have little spread.
+const UNUSUAL_LEVEL: f64 = 1.0 - 1e-5;
 /// What it must do to the mean where noise dithers, LSB.
 const HARM_LSB: f64 = 0.25;
 /// The same where a code's edge turns any movement into a whole LSB.
@@ -53,22 +56,37 @@ struct Motion {
 /// What counts as a movement.
 #[derive(Debug, Clone, Copy)]
 struct Limits {
+    /// Of the mean.
     harm: f64,
+    /// From level to level, or from start to end.
     change: f64,
+    /// Trend that is usual in the other dwells of the run.
+    trend: f64,
 }
 
 impl Limits {
-    /// Of a run whose positions scatter by `scatter`; unknown where they are too few.
-    fn of(positions: &[&Position], output: &Output, scatter: Option<f64>) -> Self {
+    /// Of a run, as far as its dwells tell without their fit.
+    fn of(positions: &[&Position], output: &Output) -> Self {
         let deviations: Vec<f64> = positions.iter().filter_map(|p| p.readings.std()).collect();
         let noise = median(&deviations).unwrap_or(0.0);
-        let (least, change) = match output.quantizer {
+        let (harm, change) = match output.quantizer {
             Quantizer::None => (0.0, 0.0),
             _ if noise < QUIET_LSB => (HARM_QUIET_LSB, CHANGE_QUIET_LSB),
             _ => (HARM_LSB, 0.0),
         };
-        // Where nothing tells how the positions scatter, a movement must stand out of the noise of single samples.
-        Self { harm: least.max(scatter.map_or(0.5 * noise, |s| HARM_SCATTERS * s)), change }
+        Self { harm, change, trend: 0.0 }
+    }
+
+    /// Held against the scatter of the dwells; where too few tell it, a movement must stand out of the noise of single
+    /// samples.
+    fn against(self, others: &[&Position], all: &[&Position], output: &Output) -> Self {
+        let fit = DwellFit::of(points(others, output.quantizer));
+        let deviations: Vec<f64> = all.iter().filter_map(|p| p.readings.std()).collect();
+        let scatter = match fit {
+            Some(f) => HARM_SCATTERS * f.scatter_lsb,
+            None => 0.5 * median(&deviations).unwrap_or(0.0),
+        };
+        Self { harm: self.harm.max(scatter), ..self }
     }
 }
 
@@ -115,14 +133,15 @@ fn student(total: f64, left: f64, n: f64) -> f64 {
 
 fn motion(blocks: &[f64], limits: Limits) -> Option<Motion> {
     let n = blocks.len();
-    if n < FEWEST_BLOCKS {
-        return None;
-    }
     let (drift, drift_t, drift_left) = trend(blocks);
     let (at, step, step_t, step_left) = jump(blocks);
     let shorter = at.min(n - at) as f64 / n as f64;
-    let drifts =
-        drift_t > SIGNIFICANT && 0.5 * drift.abs() > limits.harm && drift.abs() > limits.change;
+    if drift.abs() <= limits.trend {
+        return None;
+    }
+    // Where codes jump by whole LSB, a line through one edge rises by one and a half.
+    let risen = drift.abs().min(span(blocks).abs());
+    let drifts = drift_t > SIGNIFICANT && 0.5 * drift.abs() > limits.harm && risen > limits.change;
     let steps = step_t > SIGNIFICANT
         && step.abs() * shorter > limits.harm
         && step.abs() > limits.change
@@ -182,15 +201,44 @@ fn rests(blocks: &[f64], limits: Limits) -> bool {
         && (step_t < SIGNIFICANT || step.abs() * shorter < 0.5 * limits.harm)
 }
 
-/// Index, movement and length of the blocks of the dwells that moved.
-fn moving(positions: &[&Position], limits: Limits, skip: &[usize]) -> Vec<(usize, Motion, u64)> {
-    positions
+/// Dwell by its index, block means, samples in a block, and the trend that is usual in the other dwells.
+struct Blocks {
+    index: usize,
+    means: Vec<f64>,
+    length: u64,
+    usual_trend: f64,
+}
+
+/// Dwells with enough blocks.
+fn blocks_of(positions: &[&Position], skip: &[usize]) -> Vec<Blocks> {
+    let mut all: Vec<Blocks> = positions
         .iter()
         .enumerate()
         .filter(|(i, _)| !skip.contains(i))
-        .filter_map(|(i, p)| {
-            let (blocks, length) = block_means(&p.readings)?;
-            motion(&blocks, limits).map(|m| (i, m, length))
+        .filter_map(|(index, p)| {
+            let (means, length) = block_means(&p.readings)?;
+            let enough = means.len() >= FEWEST_BLOCKS;
+            enough.then_some(Blocks { index, means, length, usual_trend: f64::INFINITY })
+        })
+        .collect();
+    let trends: Vec<f64> = all.iter().map(|b| trend(&b.means).0).collect();
+    let Some(factor) = student_factor(UNUSUAL_LEVEL, trends.len() as f64 - 2.0) else {
+        return all;
+    };
+    for (i, b) in all.iter_mut().enumerate() {
+        let others: Vec<f64> = [&trends[..i], &trends[i + 1..]].concat();
+        b.usual_trend = spread(&others).map_or(f64::INFINITY, |s| factor * s);
+    }
+    all
+}
+
+/// Index, movement and samples in a block of the dwells that moved.
+fn moving(dwells: &[Blocks], limits: Limits) -> Vec<(usize, Motion, u64)> {
+    dwells
+        .iter()
+        .filter_map(|b| {
+            let limits = Limits { trend: b.usual_trend, ..limits };
+            motion(&b.means, limits).map(|m| (b.index, m, b.length))
         })
         .collect()
 }
@@ -202,20 +250,21 @@ pub(super) fn moved(
     output: &Output,
     skip: &[usize],
 ) -> (Vec<Finding>, Vec<usize>) {
-    let candidates = moving(positions, Limits::of(positions, output, Some(0.0)), skip);
+    let limits = Limits::of(positions, output);
+    let dwells = blocks_of(positions, skip);
+    let candidates = moving(&dwells, limits);
     if candidates.is_empty() {
         return (Vec::new(), Vec::new());
     }
     // What moved must not widen the scatter that it is held against, unless most of the run moves.
     let few = 2 * candidates.len() < positions.len();
-    let still = |i: usize| !skip.contains(&i) && !(few && candidates.iter().any(|c| c.0 == i));
+    let still = |i: usize| !(skip.contains(&i) || few && candidates.iter().any(|c| c.0 == i));
     let others: Vec<&Position> = (0..positions.len())
         .filter(|i| still(*i) && positions[*i].readings.censored(&output.ends) == 0)
         .map(|i| positions[i])
         .collect();
-    let scatter = DwellFit::of(points(&others, output.quantizer)).map(|f| f.scatter_lsb);
-    let limits = Limits::of(positions, output, scatter);
-    let motions = moving(positions, limits, skip);
+    let limits = limits.against(&others, positions, output);
+    let motions = moving(&dwells, limits);
     let findings = [FindingKind::DwellDrifts, FindingKind::DwellTwoLevels]
         .into_iter()
         .filter_map(|kind| {
@@ -290,7 +339,8 @@ mod tests {
     }
 
     fn seen(level: impl Fn(f64) -> f64) -> Option<(FindingKind, Option<usize>)> {
-        motion(&blocks(level), Limits { harm: 0.25, change: 0.0 }).map(|m| (m.kind, m.rests_after))
+        motion(&blocks(level), Limits { harm: 0.25, change: 0.0, trend: 0.0 })
+            .map(|m| (m.kind, m.rests_after))
     }
 
     #[test]
