@@ -298,14 +298,28 @@ impl DwellFit {
         p.level_lsb - self.expected_lsb(p.angle_rad).0
     }
 
+    /// `α` and `R`, LSB: the fit reads `α ± R` with the axis up and down.
+    pub fn ends(&self) -> (f64, f64) {
+        // b0 + v + s·sin x − v·cos x = α + R sin(x + ψ), x = φ − φ0
+        let (sine, versine) = self.unscaled();
+        (self.solution.b[0] + versine, sine.hypot(versine))
+    }
+
+    fn phase_rad(&self) -> f64 {
+        let (sine, versine) = self.unscaled();
+        (-versine).atan2(sine)
+    }
+
+    fn unscaled(&self) -> (f64, f64) {
+        let [_, b1, b2] = self.solution.b;
+        (b1 / self.columns.sine, b2 / self.columns.versine)
+    }
+
     /// Table angle, rad, at which the fit reads a level, with the slope there, LSB per rad. Of the two the one
     /// nearer to the angles of the run; `None` where none reads it.
     pub fn angle_of(&self, level_lsb: f64) -> Option<(f64, f64)> {
         use core::f64::consts::PI;
-        let [b0, b1, b2] = self.solution.b;
-        let (sine, versine) = (b1 / self.columns.sine, b2 / self.columns.versine);
-        // b0 + versine + sine·sin x − versine·cos x = α + R sin(x + ψ)
-        let (alpha, amplitude, psi) = (b0 + versine, sine.hypot(versine), (-versine).atan2(sine));
+        let ((alpha, amplitude), psi) = (self.ends(), self.phase_rad());
         let argument = (level_lsb - alpha) / amplitude;
         if !(amplitude > 0.0 && argument.abs() < 1.0) {
             return None;

@@ -51,9 +51,9 @@ fn misfit(fit: &DwellFit, positions: &[&Position], point: usize, in_time: bool) 
             ),
             limit,
             remedy: format!(
-                "if the table stood at {}, correct the angle{}; else measure the dwell again",
+                "if the table stood at {}, {}; else measure the dwell again",
                 f.with_unit(&meant.to_string()),
-                line_of(position),
+                correct(position, "the angle"),
             ),
         },
         None => Finding {
@@ -73,12 +73,13 @@ fn misfit(fit: &DwellFit, positions: &[&Position], point: usize, in_time: bool) 
     })
 }
 
-fn line_of(position: &Position) -> String {
+/// "correct …", with the line where it stands.
+pub(super) fn correct(position: &Position, what: &str) -> String {
     let record = &position.record;
     match record.line {
-        Some(line) if record.file.is_empty() => format!(" in line {line}"),
-        Some(line) => format!(" in line {line} of {}", record.file),
-        None => String::new(),
+        Some(line) if record.file.is_empty() => format!("correct {what} in line {line}"),
+        Some(line) => format!("correct {what} in line {line} of {}", record.file),
+        None => format!("correct {what}"),
     }
 }
 

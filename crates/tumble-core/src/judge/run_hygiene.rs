@@ -1,6 +1,6 @@
 //! All of a run's hygiene in order: what one finding explains, the next does not name again.
 
-use super::{dwell_fit, misfit, motion, outlying, recorded, wrap, zero_rows};
+use super::{dwell_fit, misfit, motion, outlying, recorded, upright, wrap, zero_rows};
 use crate::{Bench, Finding, FindingKind, Output, Position, Readings};
 
 /// Looks at the data of a run before anything is believed of them.
@@ -42,6 +42,7 @@ pub fn data_hygiene(
     let sticks = earlier.iter().any(|f| f.kind == FindingKind::StuckConverter);
     if let Some(fit) = fit.as_ref().filter(|_| !sticks) {
         findings.extend(misfit::misfits(fit, &rest));
+        findings.extend(upright::upright(fit, &rest, output.quantizer, bench));
     }
     let (moved, moving) = motion::moved(run, &read, output, &named);
     findings.extend(moved);

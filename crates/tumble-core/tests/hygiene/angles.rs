@@ -272,3 +272,29 @@ fn a_reversed_run_among_others_is_told_its_orientation() {
         ["run-2", "", "take orientation = \"reversed\" out"],
     );
 }
+
+#[test]
+fn upright_dwells_that_are_none_are_named() {
+    for plan in [THIRTEEN, SIXTY] {
+        let t = Truth { upright_in_each_run: true, ..truth(plan) };
+        // Down and up changed over: both are named.
+        let mut e = recorded(&t);
+        mistype(&mut e, 0, 1, "-90");
+        mistype(&mut e, 0, 2, "90");
+        let found = findings(&e);
+        assert_eq!(found.len(), 2, "{plan}: {found:#?}");
+        for (f, axis) in found.iter().zip(["up", "down"]) {
+            assert_eq!(f.kind, FindingKind::MistypedAngle);
+            assert!(f.observed.contains(&format!("points {axis}")), "{f:?}");
+        }
+        // 90 typed for a table angle.
+        let mut e = recorded(&t);
+        mistype(&mut e, 0, 9, "90");
+        expect_one(
+            plan,
+            &e,
+            FindingKind::DwellDoesNotFit,
+            ["dwell 9 ", "on the table at", "correct the angle in line"],
+        );
+    }
+}

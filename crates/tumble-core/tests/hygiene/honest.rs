@@ -39,6 +39,21 @@ fn benches() -> Vec<(&'static str, Truth, bool)> {
         ("walk 0.01 LSB/√s", walking(long(truth("paper")), 0.01), false),
         ("walk 0.05 LSB/√s", walking(long(truth("-60:60:60")), 0.05), false),
         ("walk 0.02 LSB/√s, quiet", walking(noisy("-60:60:60", 0.1), 0.02), false),
+        ("walk 0.2 LSB/√s, 13", walking(long(truth("-60:60:13")), 0.2), false),
+        (
+            "walk 0.1 LSB/√s, 7, not quantized",
+            walking(long(rounding(truth("-60:60:7"), None)), 0.1),
+            false,
+        ),
+        ("walk 0.05 LSB/√s, 4", walking(long(noisy("-60:60:4", 0.7)), 0.05), false),
+        ("±85°, 10′", scatter(truth("-85:85:60"), 10.0), false),
+        ("±3°, 13, 0.2 LSB", noisy("-3:3:13", 0.2), false),
+        ("three angles", truth(&["-60,0,60"; 20].join(",")), false),
+        (
+            "eccentric dial",
+            Truth { eccentricity: Angle::from_arcmin(3.0), ..truth("-60:60:60") },
+            false,
+        ),
         (
             "upright dwells in the run",
             Truth { upright_in_each_run: true, ..truth("-60:60:13") },
