@@ -10,11 +10,14 @@ const EXPLAINED_LEVEL: f64 = 0.999;
 /// Numbers typed before and after that a slip may have copied.
 const NEIGHBOURS: usize = 2;
 
-/// One finding a dwell that does not fit, with the angle that would, where there is one.
-pub(super) fn misfits(fit: &DwellFit, positions: &[&Position]) -> Vec<Finding> {
+/// One finding a dwell that does not fit, with its index, and with the angle that would fit, where there is one.
+pub(super) fn misfits(fit: &DwellFit, positions: &[&Position]) -> Vec<(usize, Finding)> {
     fit.alone()
         .into_iter()
-        .filter_map(|(point, in_time)| misfit(fit, positions, point, in_time))
+        .filter_map(|(point, in_time)| {
+            let finding = misfit(fit, positions, point, in_time)?;
+            Some((fit.points[point].index, finding))
+        })
         .collect()
 }
 

@@ -2,7 +2,9 @@
 
 use super::motion::block_means;
 use super::robust::{median, spread};
-use crate::{Code, CodeHistogram, ConverterEnds, Finding, FindingKind, Output, Position, Readings};
+use crate::{
+    Code, CodeHistogram, ConverterEnds, Finding, FindingKind, Output, Position, Quantizer, Readings,
+};
 
 /// Distance from the median in robust standard deviations: of 10¹⁵ Gaussian samples one lies so far out.
 const FAR: f64 = 8.0;
@@ -78,13 +80,13 @@ pub(super) fn usual_spread(positions: &[&Position]) -> f64 {
     median(&spreads).unwrap_or(LEAST_SPREAD_LSB)
 }
 
-/// Dwells of a run with samples far out, in one finding.
+/// Dwells of a run with samples far out, in one finding; beside it which dwells, by their index.
 pub(super) fn outlying_samples(
     run: &str,
     positions: &[&Position],
     output: &Output,
     skip: &[usize],
-) -> Option<Finding> {
+) -> (Option<Finding>, Vec<usize>) {
     let usual = usual_spread(positions);
     let hits: Vec<(usize, u64, String)> = positions
         .iter()
@@ -97,18 +99,24 @@ pub(super) fn outlying_samples(
             Readings::Averaged { .. } => None,
         })
         .collect();
-    let (first, _, text) = hits.first()?;
+    let dwells = hits.iter().map(|h| h.0).collect();
+    let Some((first, _, text)) = hits.first() else { return (None, dwells) };
     let more = match hits.len() {
         1 => String::new(),
         n => format!("; {} in {n} dwells of {run}", hits.iter().map(|h| h.1).sum::<u64>()),
     };
-    Some(Finding {
+    let limit = match output.quantizer {
+        Quantizer::None => format!("{FAR_BLOCK} robust standard deviations of block means"),
+        _ => format!("{FAR} robust standard deviations and {FAR_LSB} LSB from the median"),
+    };
+    let finding = Finding {
         kind: FindingKind::OutlyingSamples,
         place: positions[*first].place.clone(),
         observed: format!("{text}{more}"),
-        limit: format!("{FAR} robust standard deviations and {FAR_LSB} LSB from the median"),
+        limit,
         remedy: "look at these rows: a dropped bit, a missed read or a knock is no acceleration; take them out of the file or measure the dwell again, and mend the line or the logger".into(),
-    })
+    };
+    (Some(finding), dwells)
 }
 
 fn describe(o: &Outlying, samples: u64, ends: &ConverterEnds) -> String {

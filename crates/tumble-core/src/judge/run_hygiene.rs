@@ -7,9 +7,9 @@ use crate::{Bench, Finding, FindingKind, Output, Position, Readings};
 ///
 /// `dwells` are all of the run, in measured order; `earlier` what was found of the same run already.
 ///
-/// **Model** in this order: words without their sign; zero rows; dwells that do not fit the others (leave-out fit of
-/// `1, sinφ, cosφ` to the means); dwells that moved; single samples far out; times, rows and range of the record. A
-/// dwell that is named once is not named again.
+/// **Model** in this order: words without their sign; zero rows; dwells that moved; single samples far out; dwells that
+/// do not fit the others (leave-out fit of `1, sinφ, cosφ` to the means); times, rows and range of the record. What one
+/// of them explains, the next does not name again.
 ///
 /// **Source** method section 5.
 #[must_use]
@@ -33,21 +33,27 @@ pub fn data_hygiene(
         findings.push(zeros);
         named.push(index);
     }
-    let rest: Vec<&Position> =
-        (0..read.len()).filter(|i| !named.contains(i)).map(|i| read[i]).collect();
     // What stands at the converter's end has no mean.
-    let rest: Vec<&Position> =
-        rest.into_iter().filter(|p| p.readings.censored(&output.ends) == 0).collect();
-    let fit = dwell_fit::DwellFit::of(dwell_fit::points(&rest, output.quantizer));
-    let sticks = earlier.iter().any(|f| f.kind == FindingKind::StuckConverter);
-    if let Some(fit) = fit.as_ref().filter(|_| !sticks) {
-        findings.extend(misfit::misfits(fit, &rest));
-        findings.extend(upright::upright(fit, &rest, output.quantizer, bench));
-    }
+    let whole = |i: &usize| read[*i].readings.censored(&output.ends) == 0;
+    let fitted: Vec<usize> = (0..read.len()).filter(|i| !named.contains(i)).filter(whole).collect();
     let (moved, moving) = motion::moved(run, &read, output, &named);
-    findings.extend(moved);
     named.extend(moving);
-    findings.extend(outlying::outlying_samples(run, &read, output, &named));
+    let (wild, outlying) = outlying::outlying_samples(run, &read, output, &named);
+    named.extend(outlying);
+    let sticks = earlier.iter().any(|f| f.kind == FindingKind::StuckConverter);
+    let rest: Vec<&Position> = fitted.iter().map(|i| read[*i]).collect();
+    let fit = dwell_fit::DwellFit::of(dwell_fit::points(&rest, output.quantizer));
+    if let Some(fit) = fit.filter(|_| !sticks) {
+        // A movement or wild samples explain a mean that does not fit; an angle that does is named all the same.
+        let explained = |(i, f): &(usize, Finding)| {
+            f.kind == FindingKind::DwellDoesNotFit && named.contains(&fitted[*i])
+        };
+        let misfits = misfit::misfits(&fit, &rest).into_iter().filter(|m| !explained(m));
+        findings.extend(misfits.map(|(_, f)| f));
+        findings.extend(upright::upright(&fit, &rest, output.quantizer, bench));
+    }
+    findings.extend(moved);
+    findings.extend(wild);
     findings
 }
 

@@ -26,8 +26,9 @@ fn misread(fit: &DwellFit, p: &Position, quantizer: Quantizer, bench: &Bench) ->
     let level = quantizer.analogue_lsb(p.readings.mean()?);
     let (alpha, amplitude) = fit.ends();
     let lean = (ALLOWED * bench.vertical_lean.rad()).max(LEAST_LEAN_RAD);
+    let step = if quantizer == Quantizer::None { 0.0 } else { 1.0 };
     let (_, deviation) = fit.expected_lsb(p.angle.rad());
-    let allowed = amplitude * (1.0 - lean.cos()) + ALLOWED * deviation + 1.0;
+    let allowed = amplitude * (1.0 - lean.cos()) + ALLOWED * deviation + step;
     let off = level - (alpha + sign * amplitude);
     if off.abs() <= allowed {
         return None;

@@ -230,7 +230,8 @@ fn angles_that_are_none_blame_no_dwell() {
 
 #[test]
 fn too_few_positions_say_nothing() {
-    for plan in ["-60,0,60", "-60,-20,20,60", "-60,-30,0,30,60"] {
+    let two = ["-30,30"; 10].join(",");
+    for plan in ["-60,0,60", "-60,-20,20,60", "-60,-30,0,30,60", &two] {
         let mut e = recorded(&truth(plan));
         mistype(&mut e, 0, 2, "41");
         assert_eq!(blamed(&e), [""; 0], "{plan}");
