@@ -9,8 +9,8 @@ use crate::{Finding, FindingKind, Output, Position, Quantizer, Readings, ValueMo
 const FEWEST_BLOCKS: usize = 16;
 /// Fewest blocks on either side of a jump: one wild sample makes one wild block, and is no level.
 const FEWEST_ASIDE: usize = 4;
-/// Student statistic from which a movement is real. Of 300 honest dwells with white noise one in a hundred thousand
-/// passes 6.5, the jump's place being free.
+/// Student statistic from which a movement is real. White noise passes it once in 10⁵ dwells of sixteen blocks and once
+/// in 10⁸ of 46; that a jump's place is free costs a factor of ten.
 const SIGNIFICANT: f64 = 7.0;
 /// What a movement must do to the dwell's mean, in scatters of the positions: less is lost in them.
 const HARM_SCATTERS: f64 = 1.5;
