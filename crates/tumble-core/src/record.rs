@@ -67,6 +67,10 @@ pub struct Timing {
 
 /// A step is a gap from this many typical steps on.
 const GAP_STEPS: f64 = 1.5;
+/// Steps outside of this, in typical ones, are jitter.
+const JITTER: (f64, f64) = (0.8, 1.2);
+/// Steps from which a gap is clear: of an even clock, and of one that jitters.
+const CLEAR_GAP: (f64, f64) = (1.8, 5.0);
 
 impl Timing {
     /// Adds the time of the next sample, s, with the line that it stands in.
@@ -118,6 +122,37 @@ impl Timing {
             .sum()
     }
 
+    /// Samples that the clock shows as lost: [`Self::missing`], but for what jitter and bursts make of it.
+    ///
+    /// A clock that loses samples steps by whole multiples of its typical step; one that jitters has steps of any
+    /// length, and only a step of five typical ones is a gap. Where a stated rate, or more missing than recorded, says
+    /// that nothing is lost (samples that arrive in bursts), nothing is.
+    #[must_use]
+    pub fn lost(&self, stated_rate_hz: Option<f64>) -> u64 {
+        let (Some(typical), Some(span)) = (self.typical_step_s(), self.span_s()) else { return 0 };
+        let steps = |from: f64, to: f64| -> (u64, f64) {
+            self.steps
+                .values()
+                .map(|(count, sum)| (*count, *sum, sum / *count as f64 / typical))
+                .filter(|(_, _, ratio)| (from..to).contains(ratio))
+                .fold((0, 0.0), |(n, s), (count, sum, _)| (n + count, s + sum))
+        };
+        let jitters = steps(0.0, JITTER.0).0 + steps(JITTER.1, CLEAR_GAP.0).0
+            > steps(CLEAR_GAP.0, f64::INFINITY).0;
+        let gap = if jitters { CLEAR_GAP.1 } else { CLEAR_GAP.0 };
+        let (count, sum) = steps(gap, f64::INFINITY);
+        let lost = ((sum / typical).round() as u64).saturating_sub(count);
+        let expected = stated_rate_hz.map(|rate| (span * rate).round() as u64 + 1);
+        let room = expected.map_or(u64::MAX, |n| n.saturating_sub(self.samples));
+        // A rate that is stated twice too low would hide every gap.
+        let believed = expected.is_some_and(|n| n * 10 > self.samples * 9);
+        match (lost > self.samples, believed) {
+            (true, _) => 0,
+            (false, true) => lost.min(room),
+            (false, false) => lost,
+        }
+    }
+
     /// Samples per second over the whole dwell: forward steps divided by the time that they took.
     #[must_use]
     pub fn rate_hz(&self) -> Option<f64> {
@@ -161,6 +196,29 @@ mod tests {
         assert_eq!((t.repeated, t.repeated_line), (1, Some(8)));
         assert_eq!((t.backwards, t.backwards_line), (1, Some(10)));
         assert_eq!(t.longest_step_line, Some(6));
+    }
+
+    #[test]
+    fn jitter_and_bursts_lose_nothing() {
+        // A jittering clock: steps of 0.4 … 1.7 typical ones.
+        let mut time = 0.0;
+        let jitter: Vec<f64> = (0..1500u64)
+            .map(|i| {
+                time += 0.02 * (0.4 + 1.3 * (i * 7919 % 101) as f64 / 101.0);
+                time
+            })
+            .collect();
+        assert_eq!(timing(&jitter).lost(None), 0);
+        // Ten at a time.
+        let bursts: Vec<f64> =
+            (0..1500).map(|i| f64::from(i / 10) * 0.2 + f64::from(i % 10) * 0.0001).collect();
+        assert_eq!(timing(&bursts).lost(None), 0);
+        assert_eq!(timing(&bursts).lost(Some(50.0)), 0);
+        // Seven are gone.
+        let gaps: Vec<f64> =
+            (0..1500).filter(|i| !(100..107).contains(i)).map(|i| f64::from(i) * 0.02).collect();
+        assert_eq!(timing(&gaps).lost(None), 7);
+        assert_eq!(timing(&gaps).lost(Some(50.0)), 7);
     }
 
     #[test]

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use serde::Serialize;
-use tumble_core::{Experiment, Position, Run, dwell_facts, first_look};
+use tumble_core::judge::data_hygiene;
+use tumble_core::{DwellFacts, Experiment, FindingKind, Position, Run, dwell_facts, first_look};
 
 use crate::error::ReadError;
 use crate::folder::read_experiment;
@@ -79,7 +80,8 @@ pub struct CheckedDwell {
     pub temperature_degc: Option<f64>,
     /// Mean minus the plain line through the run's dwells.
     pub off: Option<f64>,
-    /// In a word: `ok`, or what is to be looked at.
+    /// In a word: `ok`, or what is to be looked at (`2 levels`, `drifts`, `outliers`, `angle?`, `off line`, `zeros`,
+    /// `at end`, `clock`, `gaps`, `one code`).
     pub state: &'static str,
 }
 
@@ -117,12 +119,14 @@ pub fn check(folder: &Path, watch: &dyn Watch) -> Result<Check, ReadError> {
 fn run(e: &Experiment, run: &Run) -> CheckedRun {
     let positions: Vec<&Position> = run.positions.iter().collect();
     let look = first_look(&positions, e.output.quantizer);
+    let hygiene = data_hygiene(&run.name, &positions, &e.output, &e.bench, &[]);
     let dwells = positions
         .iter()
         .enumerate()
         .map(|(i, p)| {
             let off = look.as_ref().and_then(|l| l.residuals.get(i).copied());
-            dwell(e, p, off)
+            let noticed = hygiene.noticed.iter().find(|n| n.0 == i).map(|n| n.1);
+            dwell(e, p, off, noticed)
         })
         .collect();
     CheckedRun {
@@ -134,7 +138,12 @@ fn run(e: &Experiment, run: &Run) -> CheckedRun {
     }
 }
 
-fn dwell(e: &Experiment, p: &Position, off: Option<f64>) -> CheckedDwell {
+fn dwell(
+    e: &Experiment,
+    p: &Position,
+    off: Option<f64>,
+    noticed: Option<FindingKind>,
+) -> CheckedDwell {
     let facts = dwell_facts(p, &e.output.ends, e.output.rate_hz);
     CheckedDwell {
         file: p.record.file.clone(),
@@ -151,18 +160,23 @@ fn dwell(e: &Experiment, p: &Position, off: Option<f64>) -> CheckedDwell {
         extent: facts.extent.map(|(lo, hi)| [lo, hi]),
         temperature_degc: facts.temperature_degc,
         off,
-        state: state(p, &facts),
+        state: state(p, &facts, noticed),
     }
 }
 
-/// The gravest thing that a dwell alone shows.
-fn state(p: &Position, facts: &tumble_core::DwellFacts) -> &'static str {
+/// The gravest thing that was noticed of a dwell, in a word.
+fn state(p: &Position, facts: &DwellFacts, noticed: Option<FindingKind>) -> &'static str {
     let backwards = p.record.timing.as_ref().is_some_and(|t| t.backwards > 0);
-    match facts {
-        f if f.at_ends > 0 => "at end",
-        _ if p.record.zero_rows.is_some() => "zeros",
+    match (noticed, facts) {
+        (Some(FindingKind::ZeroRows), _) => "zeros",
+        (Some(FindingKind::MistypedAngle), _) => "angle?",
+        (Some(FindingKind::DwellTwoLevels), _) => "2 levels",
+        (Some(FindingKind::DwellDrifts), _) => "drifts",
+        (Some(FindingKind::OutlyingSamples), _) => "outliers",
+        (Some(FindingKind::DwellDoesNotFit), _) => "off line",
+        (_, f) if f.at_ends > 0 => "at end",
         _ if backwards => "clock",
-        f if f.missing > 0 => "gaps",
+        (_, f) if f.missing > 0 => "gaps",
         _ if p.readings.only_code().is_some() => "one code",
         _ => "ok",
     }

@@ -130,6 +130,7 @@ pub fn assess(
     for (run, candidates) in adjusted_runs(experiment) {
         runs.push(assess_run(experiment, &setting, options, &run, candidates, &mut findings));
     }
+    judge::some_runs_reversed(&mut findings, &experiment.runs);
 
     let pooled = pool(&runs, gravity, options.level);
     let contradicted = findings.iter().any(|f| f.kind.severity() == crate::Severity::Reject);
@@ -213,7 +214,6 @@ fn assess_run(
 ) -> RunAssessment {
     let bench = &experiment.bench;
     let k0 = setting.nominal_scale_m_s2_per_lsb;
-    let g = bench.gravity.value_m_s2;
     // The paper's adjustment uses [scale] for k0 alone.
     let candidates = match options.method {
         crate::estimate::Method::Paper if !experiment.runs.is_empty() => {
@@ -233,19 +233,18 @@ fn assess_run(
         }
         _ => judge::Censored::LeftOut,
     };
-    let usable = judge::usable_positions(run, candidates, &experiment.output, bench, k0, censored);
+    let output = &experiment.output;
+    let usable = judge::usable_positions(run, candidates.clone(), output, bench, k0, censored);
+    let hygiene =
+        judge::data_hygiene(&run.name, &candidates, output, bench, &usable.findings).findings;
+    let contradicted = hygiene.iter().any(|f| f.kind.severity() == crate::Severity::Reject);
     findings.extend(usable.findings);
+    findings.extend(hygiene);
     let positions = usable.positions;
-    findings.extend(judge::noise(&run.name, &positions, &experiment.output, options.method));
+    findings.extend(judge::noise(&run.name, &positions, output, options.method));
     let estimate = adjust(&run.name, &positions, setting, options, findings);
     if let Some(e) = &estimate {
-        findings.extend(judge::few_angles(&run.name, e));
-        findings.extend(judge::plausible(&run.name, e, options.method, g, options.level));
-        let stated = bench.angle_uncertainty.map(crate::Angle::arcmin);
-        findings.extend(judge::table(&run.name, e, stated, g / k0));
-        findings.extend(judge::determined_run(&run.name, e));
-        findings.extend(judge::settled(&run.name, e));
-        findings.extend(judge::slow_noise(&run.name, e));
+        findings.extend(estimate_findings(experiment, k0, options, &run.name, e, contradicted));
     }
     let variances: Vec<f64> =
         positions.iter().filter_map(|p| p.readings.std()).map(|s| s * s).collect();
@@ -263,6 +262,31 @@ fn assess_run(
         temperatures_degc: positions.iter().map(|p| p.temperature_degc).collect(),
         reading_std_lsb: crate::stats::mean(&variances).map(f64::sqrt),
     }
+}
+
+/// What a run's estimate says. Values from data that are known to be wrong (`contradicted`) are not held against what
+/// is possible: their cure is another.
+fn estimate_findings(
+    experiment: &Experiment,
+    nominal_scale: f64,
+    options: &EstimateOptions,
+    run: &str,
+    estimate: &Estimate,
+    contradicted: bool,
+) -> Vec<Finding> {
+    let (bench, output) = (&experiment.bench, &experiment.output);
+    let g = bench.gravity.value_m_s2;
+    let mut findings = judge::few_angles(run, estimate);
+    if !contradicted {
+        let scale = (output, nominal_scale);
+        findings.extend(judge::plausible(run, estimate, options.method, g, options.level, scale));
+    }
+    let stated = bench.angle_uncertainty.map(crate::Angle::arcmin);
+    findings.extend(judge::table(run, estimate, stated, g / nominal_scale));
+    findings.extend(judge::determined_run(run, estimate));
+    findings.extend(judge::settled(run, estimate));
+    findings.extend(judge::slow_noise(run, estimate));
+    findings
 }
 
 /// Estimates a run. Where weights and solution find no fixed point, equal weights show what the data hold: the

@@ -3,8 +3,9 @@
 //! Only the physically impossible rejects; the unusual warns. Limits of a sensor's type come with the
 //! catalogue, not from here.
 
+use super::unit::unit_is_not_the_scales;
 use crate::estimate::{Estimate, Method, Parameter};
-use crate::{Finding, FindingKind};
+use crate::{Finding, FindingKind, Output};
 
 /// Scale error beyond which the nominal scale belongs to another sensor, range or unit. Data sheets state ±4 to
 /// ±8 %; half or twice is another range.
@@ -20,7 +21,7 @@ pub(crate) const BIAS_UNUSUAL_M_S2: f64 = 1.0;
 /// Scale over nominal scale that means g for m/s²: 9.8, with room for a sensor's own scale error.
 pub(crate) const UNITS_RATIO: std::ops::Range<f64> = 8.5..11.5;
 
-/// What a run's estimates look like beside what is possible.
+/// What a run's estimates look like beside what is possible. `output` comes with the nominal scale in use.
 #[must_use]
 pub fn plausible(
     run: &str,
@@ -28,94 +29,123 @@ pub fn plausible(
     method: Method,
     gravity_m_s2: f64,
     level: f64,
+    output: (&Output, f64),
 ) -> Vec<Finding> {
-    let [bias, misalignment, scale_error] = estimate.values;
-    let factor = |p: Parameter| estimate.coverage_factor(p, level).unwrap_or(0.0);
-    // An uncertain estimate is undetermined before it is implausible.
-    let surely_beyond = |p: Parameter, value: f64, limit: f64| {
-        let planned = estimate.plan_uncertainty.map_or(0.0, |u| u[p.index()]);
-        let u = estimate.standard_uncertainty(p).unwrap_or(0.0).max(planned);
-        value.abs() - factor(p) * u > limit
-    };
-    let finding = |kind, observed: String, limit: String, remedy: &str| Finding {
-        kind,
-        place: run.to_owned(),
-        observed,
-        limit,
-        remedy: remedy.to_owned(),
-    };
+    let look = Look { run, estimate, gravity_m_s2, level };
     if is_reversed(estimate, method) {
-        return vec![finding(
+        return vec![look.finding(
             FindingKind::SignReversed,
             "codes fall where the angle rises".into(),
             "codes rise with the angle".into(),
             "set angle_sign = -1 in [bench] (the dial counts the other way), or turn the sensor round",
         )];
     }
-    let mut findings = Vec::new();
-    if let Some(dk) = scale_error {
+    let [bias, misalignment, scale_error] = estimate.values;
+    [
+        scale_error.and_then(|dk| look.at_scale_error(dk, output)),
+        misalignment.and_then(|dphi| look.at_misalignment(dphi)),
+        bias.and_then(|b| look.at_bias(b)),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+/// One run's estimate, and what it is held against.
+struct Look<'a> {
+    run: &'a str,
+    estimate: &'a Estimate,
+    gravity_m_s2: f64,
+    level: f64,
+}
+
+impl Look<'_> {
+    fn finding(&self, kind: FindingKind, observed: String, limit: String, remedy: &str) -> Finding {
+        Finding { kind, place: self.run.to_owned(), observed, limit, remedy: remedy.to_owned() }
+    }
+
+    fn factor(&self, p: Parameter) -> f64 {
+        self.estimate.coverage_factor(p, self.level).unwrap_or(0.0)
+    }
+
+    /// An uncertain estimate is undetermined before it is implausible.
+    fn surely_beyond(&self, p: Parameter, value: f64, limit: f64) -> bool {
+        let planned = self.estimate.plan_uncertainty.map_or(0.0, |u| u[p.index()]);
+        let u = self.estimate.standard_uncertainty(p).unwrap_or(0.0).max(planned);
+        value.abs() - self.factor(p) * u > limit
+    }
+
+    fn at_scale_error(&self, dk: f64, (output, nominal_scale): (&Output, f64)) -> Option<Finding> {
         let ratio = 1.0 + dk;
+        let parameter = Parameter::ScaleError;
         if UNITS_RATIO.contains(&ratio) || UNITS_RATIO.contains(&(1.0 / ratio)) {
-            findings.push(finding(
+            return Some(self.finding(
                 FindingKind::UnitsMixedUp,
                 format!("scale {ratio:.3} times the nominal one"),
                 "9.8 or 1/9.8 is g taken for m/s²".into(),
                 "give nominal_scale in m/s² per LSB (multiply g per LSB by 9.80665)",
             ));
-        } else if surely_beyond(Parameter::ScaleError, dk, SCALE_ERROR_LIMIT)
+        }
+        let beyond = self.surely_beyond(parameter, dk, SCALE_ERROR_LIMIT)
             || (dk.abs() > SCALE_ERROR_LIMIT
-                && well_known_scale(estimate, factor(Parameter::ScaleError)))
-        {
-            findings.push(finding(
+                && well_known_scale(self.estimate, self.factor(parameter)));
+        if beyond {
+            let other_unit =
+                unit_is_not_the_scales(self.run, ratio, nominal_scale, self.gravity_m_s2, output);
+            return other_unit.or_else(|| Some(self.finding(
                 FindingKind::ScaleImplausible,
                 format!("scale error {:+.1} %", dk * 100.0),
                 format!("±{:.0} %", SCALE_ERROR_LIMIT * 100.0),
-                "check nominal_scale, the sensor's range, and that the angle column holds angles in degrees",
-            ));
-        } else if surely_beyond(Parameter::ScaleError, dk, SCALE_ERROR_UNUSUAL) {
-            findings.push(finding(
+                "check nominal_scale (m/s² per LSB), the sensor's range, and that the angle column holds angles in degrees",
+            )));
+        }
+        self.surely_beyond(parameter, dk, SCALE_ERROR_UNUSUAL).then(|| {
+            self.finding(
                 FindingKind::Unusual,
                 format!("scale error {:+.1} %", dk * 100.0),
                 format!("±{:.0} %", SCALE_ERROR_UNUSUAL * 100.0),
                 "check nominal_scale against the data sheet",
-            ));
-        }
+            )
+        })
     }
-    if let Some(dphi) = misalignment {
-        if surely_beyond(Parameter::Misalignment, dphi, MISALIGNMENT_LIMIT_RAD) {
-            findings.push(finding(
+
+    fn at_misalignment(&self, dphi: f64) -> Option<Finding> {
+        if self.surely_beyond(Parameter::Misalignment, dphi, MISALIGNMENT_LIMIT_RAD) {
+            return Some(self.finding(
                 FindingKind::MisalignmentImpossible,
                 format!("misalignment {:+.1}°", dphi.to_degrees()),
                 format!("±{:.0}°", MISALIGNMENT_LIMIT_RAD.to_degrees()),
                 "is the angle column a counter, or the dial's zero elsewhere? Give angles in degrees, or set angle_zero_deg",
             ));
-        } else if surely_beyond(Parameter::Misalignment, dphi, MISALIGNMENT_UNUSUAL_RAD) {
-            findings.push(finding(
+        }
+        self.surely_beyond(Parameter::Misalignment, dphi, MISALIGNMENT_UNUSUAL_RAD).then(|| {
+            self.finding(
                 FindingKind::Unusual,
                 format!("misalignment {:+.2}°", dphi.to_degrees()),
                 format!("±{:.1}°", MISALIGNMENT_UNUSUAL_RAD.to_degrees()),
                 "level the table, or set angle_zero_deg",
-            ));
-        }
+            )
+        })
     }
-    if let Some(b) = bias {
-        if surely_beyond(Parameter::Bias, b, gravity_m_s2) {
-            findings.push(finding(
+
+    fn at_bias(&self, b: f64) -> Option<Finding> {
+        if self.surely_beyond(Parameter::Bias, b, self.gravity_m_s2) {
+            return Some(self.finding(
                 FindingKind::BiasImpossible,
                 format!("bias {b:+.3} m/s²"),
-                format!("±{gravity_m_s2:.2} m/s²"),
+                format!("±{:.2} m/s²", self.gravity_m_s2),
                 "check the converter's coding (signed or unsigned codes, an offset) and the angle column",
             ));
-        } else if surely_beyond(Parameter::Bias, b, BIAS_UNUSUAL_M_S2) {
-            findings.push(finding(
+        }
+        self.surely_beyond(Parameter::Bias, b, BIAS_UNUSUAL_M_S2).then(|| {
+            self.finding(
                 FindingKind::Unusual,
                 format!("bias {b:+.3} m/s²"),
                 format!("±{BIAS_UNUSUAL_M_S2} m/s²"),
                 "check the data sheet's zero-g limits and the converter's reference",
-            ));
-        }
+            )
+        })
     }
-    findings
 }
 
 /// Whether the scale factor itself is known to a tenth, however absurd the nominal one is: a scale given upside

@@ -297,6 +297,9 @@ impl Reader<'_> {
             if !read.ignored.is_empty() {
                 findings.push(ignored_columns(file, &read.ignored));
             }
+            if asked.angles_deg.is_some() {
+                findings.push(cut_out(file, &read.dwells));
+            }
             for (i, dwell) in read.dwells.into_iter().enumerate() {
                 positions.push(self.position(dwell, file, i, table));
             }
@@ -453,6 +456,21 @@ impl Reader<'_> {
             Ok(Position { angle, seat, readings, temperature_degc, place, record })
         };
         Ok(VerticalPair { up: dwell(Seat::Up)?, down: dwell(Seat::Down)?, run: scale.run.clone() })
+    }
+}
+
+/// Names the lines at which the dwells of a continuous record begin.
+fn cut_out(file: &str, dwells: &[Dwell]) -> Finding {
+    const SHOWN: usize = 12;
+    let lines: Vec<String> =
+        dwells.iter().filter_map(|d| d.record.line).take(SHOWN).map(|l| l.to_string()).collect();
+    let more = if dwells.len() > SHOWN { ", …" } else { "" };
+    Finding {
+        kind: FindingKind::DwellsCutOut,
+        place: file.to_owned(),
+        observed: format!("{} dwells, from lines {}{more} on", dwells.len(), lines.join(", ")),
+        limit: "block means within 5 of their standard deviations of the dwell's level".into(),
+        remedy: "look at the dwells with tumble check: each must be one position".into(),
     }
 }
 
