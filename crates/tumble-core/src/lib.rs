@@ -19,6 +19,7 @@ mod nominal;
 mod quantizer;
 mod readings;
 mod record;
+mod sensor_type;
 pub mod simulate;
 pub mod stats;
 pub mod term;
@@ -39,4 +40,5 @@ pub use nominal::{
 pub use quantizer::{Compensation, ConverterEnds, Quantizer, QuantizerOffset};
 pub use readings::{Readings, ValueMoments, ValueOutOfRange};
 pub use record::{Dial, Record, Timing};
+pub use sensor_type::{LimitOf, Mark, SensitivityUnit, SensorMode, SensorType, TypeLimit};
 pub use units::{ARCMIN_RAD, Angle, Code, STANDARD_GRAVITY_M_S2};

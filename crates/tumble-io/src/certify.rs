@@ -5,8 +5,9 @@ use std::path::Path;
 use tumble_core::assess::{AssessError, assess};
 use tumble_core::estimate::EstimateOptions;
 
+use crate::catalogue::UserCatalogue;
 use crate::error::ReadError;
-use crate::folder::read_experiment;
+use crate::folder::read_experiment_with;
 use crate::passport::{self, Passport};
 
 /// Options of [`certify`].
@@ -18,6 +19,8 @@ pub struct CertifyOptions {
     pub id: Option<String>,
     /// Day of issue; else the folder's.
     pub issued: Option<String>,
+    /// Types of sensors over the folder's and the built-in ones.
+    pub catalogue: Option<UserCatalogue>,
 }
 
 /// An experiment that could not be certified: nothing was judged.
@@ -43,7 +46,8 @@ impl std::error::Error for CertifyError {}
 /// Reads an experiment folder, judges it and makes its passport. Rejected and indeterminate experiments get a
 /// passport too; it says why.
 pub fn certify(folder: &Path, options: &CertifyOptions) -> Result<Passport, CertifyError> {
-    let read = read_experiment(folder).map_err(CertifyError::Read)?;
+    let read =
+        read_experiment_with(folder, options.catalogue.as_ref()).map_err(CertifyError::Read)?;
     let mut assessment =
         assess(&read.experiment, &options.estimate).map_err(CertifyError::Assess)?;
     assessment.findings.extend(read.findings.iter().cloned());

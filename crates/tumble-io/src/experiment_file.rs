@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
-use crate::error::{Place, Problem, ReadError};
+use crate::error::ReadError;
+use crate::toml_text;
 
 /// The whole file.
 #[derive(Debug, Clone, Deserialize)]
@@ -133,14 +134,7 @@ pub(crate) struct SpecTable {
 
 /// Parses `experiment.toml`.
 pub(crate) fn parse(text: &str, shown_as: &str) -> Result<ExperimentFile, ReadError> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    toml::from_str::<ExperimentFile>(text).map_err(|e| {
-        let (line, column) = e.span().map_or((1, 1), |s| line_and_column(text, s.start));
-        ReadError {
-            place: Place::field(shown_as, line, column.to_string()),
-            problem: problem(e.message()),
-        }
-    })
+    toml_text::from_toml(text, shown_as)
 }
 
 /// A date of TOML or a text, as text.
@@ -148,31 +142,6 @@ pub(crate) fn date_text(value: &toml::Value) -> String {
     match value {
         toml::Value::String(s) => s.clone(),
         other => other.to_string(),
-    }
-}
-
-fn line_and_column(text: &str, at: usize) -> (u64, usize) {
-    let before = text.get(..at).unwrap_or(text);
-    let line = before.matches('\n').count() as u64 + 1;
-    let column = before.rsplit('\n').next().map_or(0, |l| l.chars().count()) + 1;
-    (line, column)
-}
-
-/// The deserializer's message about an unknown key names the key and the known ones between backticks.
-fn problem(message: &str) -> Problem {
-    let mut quoted = message.split('`').skip(1).step_by(2).map(str::to_owned);
-    match (message.starts_with("unknown field"), quoted.next()) {
-        (true, Some(key)) => {
-            let known: Vec<String> = quoted.collect();
-            let nearest = known
-                .iter()
-                .map(|k| (strsim::jaro_winkler(&key.to_lowercase(), k), k))
-                .filter(|(similar, _)| *similar > 0.75)
-                .max_by(|a, b| a.0.total_cmp(&b.0))
-                .map(|(_, k)| k.clone());
-            Problem::UnknownKey { key, nearest, known }
-        }
-        _ => Problem::Toml { message: message.to_owned() },
     }
 }
 

@@ -10,6 +10,7 @@
 //! Coefficients are shown only where the contract allows: accepted, or indeterminate for want of runs alone. A
 //! rejected passport gets a report of why.
 
+mod catalogue;
 mod figure;
 mod html;
 mod merge;
@@ -21,6 +22,7 @@ mod summary;
 mod units;
 mod words;
 
+pub use catalogue::{catalogue, catalogue_converter, catalogue_entry};
 pub use figure::{Figure, figures};
 pub use html::html;
 pub use numbers::value_with_uncertainty;

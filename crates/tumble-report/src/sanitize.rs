@@ -45,7 +45,7 @@ fn clean(tree: &mut Value) {
     }
 }
 
-fn clean_text(text: &str) -> String {
+pub(crate) fn clean_text(text: &str) -> String {
     let mut out: String = text.chars().take(LONGEST).map(visible).collect();
     if text.chars().nth(LONGEST).is_some() {
         out.push('…');
@@ -89,7 +89,7 @@ fn unreadable() -> Passport {
         reasons: Vec::new(),
         missing: vec!["a number in this passport is not finite: it cannot be shown".into()],
         conformity: p::Conformity { status: "not_assessed".into() },
-        sensor: p::Sensor { model: unknown(), serial: unknown(), axis: unknown() },
+        sensor: p::Sensor { model: unknown(), serial: unknown(), axis: unknown(), kind: None },
         output: p::Output {
             quantizer: unknown(),
             unit: "LSB".into(),

@@ -15,6 +15,7 @@ fn main() -> std::process::ExitCode {
         cli::Command::Certify(a) => commands::certify::run(&a),
         cli::Command::Simulate(a) => commands::simulate::run(&a),
         cli::Command::Compensate(a) => commands::compensate::run(&a),
+        cli::Command::Catalogue(a) => commands::catalogue::run(&a),
     };
     code.into()
 }

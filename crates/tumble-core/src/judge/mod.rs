@@ -9,6 +9,7 @@ mod reproducible;
 mod settled;
 mod structure;
 mod table;
+mod type_limits;
 
 pub use hygiene::{Censored, Usable, identical_runs, usable_positions};
 pub use identifiable::{determined_result, determined_run, few_angles};
@@ -17,3 +18,4 @@ pub use reproducible::reproducible;
 pub use settled::settled;
 pub use structure::{Structure, structure};
 pub use table::{noise, slow_noise, table};
+pub use type_limits::{Judged, type_limits};

@@ -10,6 +10,7 @@ use tumble_core::{
     Seat, Sensor, VerticalPair,
 };
 
+use crate::catalogue::{CATALOGUE_FILE, Catalogue, UserCatalogue};
 use crate::csv::{Dwell, RunFileOptions, read_run_file};
 use crate::error::{Place, Problem, ReadError};
 use crate::experiment_file::{self, BenchTable, Orientation, RunTable, ScaleTable};
@@ -58,6 +59,14 @@ pub struct RunRemark {
 /// **Errors** [`ReadError`] with file, line, column and remedy for everything that is not understood. Degenerate
 /// data are no error here.
 pub fn read_experiment(folder: &Path) -> Result<ExperimentFolder, ReadError> {
+    read_experiment_with(folder, None)
+}
+
+/// The same, with a catalogue over the folder's own and the built-in one.
+pub fn read_experiment_with(
+    folder: &Path,
+    catalogue: Option<&UserCatalogue>,
+) -> Result<ExperimentFolder, ReadError> {
     let toml_path = folder.join(EXPERIMENT_FILE);
     let bytes = std::fs::read(&toml_path).map_err(|e| match e.kind() {
         std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory => ReadError {
@@ -82,6 +91,14 @@ pub fn read_experiment(folder: &Path) -> Result<ExperimentFolder, ReadError> {
     let mut findings = Vec::new();
 
     let reader = Reader { folder, output: &output, bench: &bench, table: &file.bench };
+    let own = reader.catalogue()?;
+    let over: Vec<&UserCatalogue> = own.iter().chain(catalogue).collect();
+    inputs.extend(over.iter().map(|c| c.input.clone()));
+    let kind = over
+        .iter()
+        .fold(Catalogue::builtin().clone(), |all, user| all.with(&user.catalogue))
+        .find(&file.sensor.model)
+        .map(|e| e.sensor_type.clone());
     let vertical = match &file.scale {
         Some(scale) => Some(reader.vertical(scale, &names, &mut inputs, &mut findings)?),
         None => None,
@@ -108,6 +125,7 @@ pub fn read_experiment(folder: &Path) -> Result<ExperimentFolder, ReadError> {
                 model: file.sensor.model.clone(),
                 serial: file.sensor.serial.clone(),
                 axis: file.sensor.axis.clone(),
+                kind,
             },
             output,
             bench,
@@ -182,6 +200,15 @@ impl Reader<'_> {
         let real = path.canonicalize().map_err(io)?;
         let root = self.folder.canonicalize().map_err(io)?;
         if real.starts_with(root) { Ok(path) } else { Err(outside()) }
+    }
+
+    /// The folder's own catalogue, where there is one.
+    fn catalogue(&self) -> Result<Option<UserCatalogue>, ReadError> {
+        if self.folder.join(CATALOGUE_FILE).symlink_metadata().is_err() {
+            return Ok(None);
+        }
+        let path = self.inside(CATALOGUE_FILE)?;
+        Catalogue::read_as(&path, CATALOGUE_FILE, CATALOGUE_FILE).map(Some)
     }
 
     /// Runs in parallel, combined in the order of experiment.toml.
