@@ -20,7 +20,7 @@ pub fn catalogue(catalogue: &Catalogue) -> String {
     );
     let _ = writeln!(
         out,
-        "{:<12} {:<30} {:<15} {:<15}",
+        "{:<12} {:<30} {:<15} {}",
         "sensor", "sensitivity", "zero-g, mg", "noise, ug/rtHz"
     );
     for e in catalogue.sensors() {
@@ -38,7 +38,7 @@ pub fn catalogue(catalogue: &Catalogue) -> String {
         let _ = writeln!(out, "{}", row.trim_end());
     }
     if !catalogue.converters().is_empty() {
-        let _ = writeln!(out, "\n{:<12} {:<30} {}", "converter", "samples/s (bits)", "reference");
+        let _ = writeln!(out, "\n{:<12} {:<30} {}", "converter", "reference", "samples/s (bits)");
     }
     for c in catalogue.converters() {
         let rates: Vec<String> =
@@ -46,8 +46,8 @@ pub fn catalogue(catalogue: &Catalogue) -> String {
         let row = format!(
             "{:<12} {:<30} {}",
             shown(&c.model, 12),
-            shortened(&rates.join(" "), 32),
-            reference(c)
+            reference(c),
+            shortened(&rates.join(", "), 36)
         );
         let _ = writeln!(out, "{}", row.trim_end());
     }
@@ -207,11 +207,13 @@ fn limit_full(l: &TypeLimit) -> String {
         LimitOf::NoiseDensity | LimitOf::Resolution => "",
         _ => "+-",
     };
+    let unit = l.of.unit();
     if let Some(t) = l.typical {
-        parts.push(format!("{sign}{} typical", number(t)));
+        let word = if l.of == LimitOf::Resolution { "" } else { " typical" };
+        parts.push(format!("{sign}{} {unit}{word}", number(t)));
     }
     if let Some(m) = l.maximum {
-        parts.push(format!("{sign}{} at most", number(m)));
+        parts.push(format!("{sign}{} {unit} at most", number(m)));
     }
     let scope: Vec<String> = l
         .axes
@@ -221,7 +223,7 @@ fn limit_full(l: &TypeLimit) -> String {
         .collect();
     let scope = if scope.is_empty() { String::new() } else { format!("{}: ", scope.join(", ")) };
     let note = if l.note.is_empty() { String::new() } else { format!("; {}", l.note) };
-    format!("{scope}{} {} ({}){note}", parts.join(", "), l.of.unit(), l.mark.name())
+    format!("{scope}{} ({}){note}", parts.join(", "), l.mark.name())
 }
 
 fn reference(c: &Converter) -> String {
@@ -264,8 +266,8 @@ mod tests {
         let page = catalogue_entry(Catalogue::builtin().find("ADXL203").unwrap());
         for words in [
             "5 V: 1000 mV/g (verified); tolerance +-4 % (recalled)",
-            "+-25 typical, +-100 at most mg (recalled)",
-            "5 V: 110 typical ug/rtHz (verified)",
+            "+-25 mg typical, +-100 mg at most (recalled)",
+            "5 V: 110 ug/rtHz typical (verified)",
             "source",
             "ratiometric",
         ] {

@@ -64,6 +64,8 @@ fn links_lead_somewhere() {
         "SECURITY.md",
         "docs/estimators.md",
         "docs/likelihood.md",
+        "docs/experiment.md",
+        "docs/catalogue.md",
     ] {
         let text = std::fs::read_to_string(root().join(document)).unwrap();
         let folder = root().join(document).parent().unwrap().to_path_buf();
