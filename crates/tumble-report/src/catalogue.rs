@@ -18,11 +18,8 @@ pub fn catalogue(catalogue: &Catalogue) -> String {
     let mut out = String::from(
         "Marks: v verified in the maker's document, p partly, r recalled (not verified).\n\n",
     );
-    let _ = writeln!(
-        out,
-        "{:<12} {:<30} {:<15} {}",
-        "sensor", "sensitivity", "zero-g, mg", "noise, ug/rtHz"
-    );
+    let _ =
+        writeln!(out, "{:<12} {:<30} {:<15} noise, ug/rtHz", "sensor", "sensitivity", "zero-g, mg");
     for e in catalogue.sensors() {
         let first = e.modes().first();
         let more = e.modes().len().saturating_sub(1);
@@ -38,7 +35,7 @@ pub fn catalogue(catalogue: &Catalogue) -> String {
         let _ = writeln!(out, "{}", row.trim_end());
     }
     if !catalogue.converters().is_empty() {
-        let _ = writeln!(out, "\n{:<12} {:<30} {}", "converter", "reference", "samples/s (bits)");
+        let _ = writeln!(out, "\n{:<12} {:<30} samples/s (bits)", "converter", "reference");
     }
     for c in catalogue.converters() {
         let rates: Vec<String> =

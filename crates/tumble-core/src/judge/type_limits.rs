@@ -29,6 +29,10 @@ const DITHERED_LSB: f64 = 0.5;
 /// Words shifted by up to so many bits are words of the same sensor: left-justified registers, coarser readings.
 const MOST_SHIFT_BITS: f64 = 16.0;
 
+/// A scale within so many octaves of a mode's (19 %) is that mode's, however another one would fit with shifted
+/// words: twice the widest tolerance of data sheets.
+const NEAR_OCTAVES: f64 = 0.25;
+
 /// Everything that the limits are held against.
 #[derive(Debug, Clone, Copy)]
 pub struct Judged<'a> {
@@ -105,27 +109,32 @@ struct Matched<'a> {
     shift: f64,
 }
 
+/// The mode that is near as it stands, else the one that is near with the fewest bits of shift, else the nearest.
 fn nearest_mode<'a>(kind: &'a SensorType, unit: &str, scale: f64) -> Option<Matched<'a>> {
-    kind.modes
-        .iter()
-        .filter_map(|mode| {
-            let nominal = mode.nominal_scale_m_s2_per(unit)?;
-            let octaves = (scale / nominal).log2();
-            let shift = match unit {
-                "LSB" => octaves.round().clamp(-MOST_SHIFT_BITS, MOST_SHIFT_BITS),
-                _ => 0.0,
-            };
-            let distance = (octaves - shift).abs();
-            distance.is_finite().then_some((
-                distance,
-                Matched { mode, nominal_m_s2_per_unit: nominal * shift.exp2(), shift },
-            ))
-        })
-        // Of modes that differ by whole bits the one as it stands.
+    let mut candidates: Vec<(f64, Matched<'_>)> = Vec::new();
+    for mode in &kind.modes {
+        let Some(nominal) = mode.nominal_scale_m_s2_per(unit) else { continue };
+        let octaves = (scale / nominal).log2();
+        if !octaves.is_finite() {
+            continue;
+        }
+        let shift = match unit {
+            "LSB" => octaves.round().clamp(-MOST_SHIFT_BITS, MOST_SHIFT_BITS),
+            _ => 0.0,
+        };
+        let matched = Matched { mode, nominal_m_s2_per_unit: nominal * shift.exp2(), shift };
+        candidates.push(((octaves - shift).abs(), matched));
+    }
+    let is_near = |distance: f64| distance < NEAR_OCTAVES;
+    candidates
+        .into_iter()
         .min_by(|(a, m), (b, n)| {
-            let near = (a - b).abs() < 1e-3;
-            let by_shift = m.shift.abs().total_cmp(&n.shift.abs());
-            if near { by_shift.then(a.total_cmp(b)) } else { a.total_cmp(b) }
+            let near_first = is_near(*b).cmp(&is_near(*a));
+            let fewest_bits = match is_near(*a) && is_near(*b) {
+                true => m.shift.abs().total_cmp(&n.shift.abs()),
+                false => std::cmp::Ordering::Equal,
+            };
+            near_first.then(fewest_bits).then(a.total_cmp(b))
         })
         .map(|(_, m)| m)
 }
@@ -138,6 +147,11 @@ fn finding(place: &str, observed: String, limit: String, remedy: String) -> Find
         limit,
         remedy,
     }
+}
+
+/// A product of a catalogue's number as a person writes it: without the last bits of binary arithmetic.
+fn plain(v: f64) -> f64 {
+    format!("{v:.9e}").parse().unwrap_or(v)
 }
 
 fn source(kind: &SensorType) -> String {
@@ -176,12 +190,12 @@ fn sensitivity(
             scale.value
         ),
         format!(
-            "{} {}: {} {} ± {:.4} % ({}; {})",
+            "{} {}: {} {} ± {} % ({}; {})",
             kind.model,
             mode.name,
             mode.sensitivity,
             mode.unit.name(),
-            100.0 * tolerance,
+            plain(100.0 * tolerance),
             mark.words(),
             source(kind)
         ),
@@ -207,7 +221,7 @@ fn limit_text(kind: &SensorType, limit: &TypeLimit) -> String {
         (Some(most), _) => format!("± {most} {unit} at most"),
         (None, Some(typical)) => format!(
             "± {} {unit}, {TYPICAL_TO_LIMIT} times the typical {typical} {unit}",
-            TYPICAL_TO_LIMIT * typical
+            plain(TYPICAL_TO_LIMIT * typical)
         ),
         (None, None) => String::new(),
     };

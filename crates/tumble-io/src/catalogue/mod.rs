@@ -395,7 +395,10 @@ mod tests {
         let limit = "[[sensor.limit]]\nof = \"zero-g\"\nunit = \"mg\"\n";
         for (text, words) in [
             (format!("{head}alias = 1\n"), ["line 4, column 1", "`aliases`"]),
-            (format!("{head}{mode}tolerance = 4\n"), ["line 8, column 1", "`tolerance_percent`"]),
+            (
+                format!("{head}{mode}tolerance_per = 4\n"),
+                ["line 8, column 1", "`tolerance_percent`"],
+            ),
             (format!("{head}{mode}{limit}maxium = 4\n"), ["line 11", "`maximum`"]),
             (head.to_owned(), ["line 2", "[[sensor.mode]]"]),
             (format!("{head}{}", mode.replace("1000", "-1")), ["line 6, column 15", "positive"]),
