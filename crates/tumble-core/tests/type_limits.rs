@@ -295,6 +295,7 @@ fn every_finding_names_model_limit_unit_mark_source_and_cure() {
         for words in ["PART-1", "not verified", "a data sheet", "built-in", unit] {
             assert!(f.limit.contains(words), "{words}: {f:?}");
         }
+        assert!(f.observed.contains("recalled, not verified"), "{f:?}");
         assert!(f.remedy.len() > 40 && !f.observed.is_empty(), "{f:?}");
         // Findings of Tumble itself stay below 500 characters.
         assert!(f.limit.chars().count() < 300, "{f:?}");

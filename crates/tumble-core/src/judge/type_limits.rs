@@ -184,10 +184,12 @@ fn sensitivity(
     Some(finding(
         "scale factor",
         format!(
-            "sensitivity {:+.2} % from nominal, ± {:.2} % ({:.6} m/s² per {unit}{shifted})",
+            "sensitivity {:+.2} % from nominal, ± {:.2} % ({:.6} m/s² per {unit}{shifted}), beyond ± {} % ({})",
             100.0 * deviation.value,
             100.0 * deviation.expanded,
-            scale.value
+            scale.value,
+            plain(100.0 * tolerance),
+            mark.words()
         ),
         format!(
             "{} {}: {} {} ± {} % ({}; {})",
@@ -200,7 +202,7 @@ fn sensitivity(
             source(kind)
         ),
         format!(
-            "check the sensor's range or supply ({supply}a divider and the converter's reference come in as well), local gravity, and that the part is a {}",
+            "check the sensor's range or supply ({supply}a divider and the converter's reference come in as well), local gravity, and that the part is of type {}",
             kind.model
         ),
     ))
@@ -235,20 +237,23 @@ fn zero_g(
     bias: Interval,
 ) -> Option<Finding> {
     let limit = widest(kind.limits_for(LimitOf::ZeroG, axis, mode))?;
-    if !bias.surely_beyond(limit.bound()? * MG_M_S2) {
+    let bound = limit.bound()?;
+    if !bias.surely_beyond(bound * MG_M_S2) {
         return None;
     }
     Some(finding(
         "bias",
         format!(
-            "bias {:+.1} mg, ± {:.1} mg ({:+.4} m/s²)",
+            "bias {:+.1} mg, ± {:.1} mg ({:+.4} m/s²), beyond ± {} mg ({})",
             bias.value / MG_M_S2,
             bias.expanded / MG_M_S2,
-            bias.value
+            bias.value,
+            plain(bound),
+            limit.mark.words()
         ),
         limit_text(kind, limit),
         format!(
-            "the limit is for a part by itself at room temperature: check stress from mounting and soldering, the supply, the converter's offset and reference, and that the part is a {}",
+            "the limit is for a part by itself at room temperature: check stress from mounting and soldering, the supply, the converter's offset and reference, and that the part is of type {}",
             kind.model
         ),
     ))
@@ -261,15 +266,18 @@ fn temperature(
     effect: Interval,
 ) -> Option<Finding> {
     let limit = widest(kind.limits_for(LimitOf::ZeroGTempco, axis, mode))?;
-    if !effect.surely_beyond(limit.bound()? * MG_M_S2) {
+    let bound = limit.bound()?;
+    if !effect.surely_beyond(bound * MG_M_S2) {
         return None;
     }
     Some(finding(
         "temperature",
         format!(
-            "the bias changes by {:+.2} mg/K, ± {:.2} mg/K",
+            "the bias changes by {:+.2} mg/K, ± {:.2} mg/K, beyond ± {} mg/K ({})",
             effect.value / MG_M_S2,
-            effect.expanded / MG_M_S2
+            effect.expanded / MG_M_S2,
+            plain(bound),
+            limit.mark.words()
         ),
         limit_text(kind, limit),
         "something else drifts with the temperature: the mounting, the table, the supply or the converter; let all of it warm up, or warm the sensor alone".into(),
@@ -327,7 +335,7 @@ fn noise(
     let mark = limits.iter().map(|l| l.mark).min()?;
     let remedy = if high < floor {
         format!(
-            "no {} is that quiet: check rate_hz, whether the logger averages or repeats samples, and the model",
+            "no part of type {} is that quiet: check rate_hz, whether the logger averages or repeats samples, and the model",
             kind.model
         )
     } else if low > ceiling {
@@ -337,7 +345,11 @@ fn noise(
     };
     Some(finding(
         &run.name,
-        format!("noise within dwells {} µg/√Hz at {rate_hz} samples/s", range(low, high)),
+        format!(
+            "noise within dwells {} µg/√Hz at {rate_hz} samples/s, outside {floor:.0} to {ceiling:.0} ({})",
+            range(low, high),
+            mark.words()
+        ),
         format!(
             "{} noise density: {floor:.0} to {ceiling:.0} µg/√Hz, a third to three times the data sheet's through a one-pole filter ({}; {})",
             kind.model,
