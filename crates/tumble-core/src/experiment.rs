@@ -1,6 +1,6 @@
 //! What was measured, before anything is computed from it.
 
-use crate::{Angle, ConverterEnds, Gravity, Quantizer, Readings, Record};
+use crate::{Angle, ConverterEnds, Gravity, Quantizer, Readings, Record, SensorType};
 
 /// One sensor, one axis, one bench, one or more runs.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,7 +20,7 @@ pub struct Experiment {
 }
 
 /// The unit under calibration.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Sensor {
     /// Model, free text.
     pub model: String,
@@ -28,6 +28,8 @@ pub struct Sensor {
     pub serial: String,
     /// Sensitive axis, free text.
     pub axis: String,
+    /// What the catalogue says of the model, where it knows it.
+    pub kind: Option<SensorType>,
 }
 
 /// What the converter delivers.

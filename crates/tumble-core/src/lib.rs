@@ -21,6 +21,7 @@ mod nominal;
 mod quantizer;
 mod readings;
 mod record;
+mod sensor_type;
 pub mod simulate;
 pub mod stats;
 mod stillness;
@@ -44,5 +45,6 @@ pub use nominal::{
 pub use quantizer::{Compensation, ConverterEnds, Quantizer, QuantizerOffset};
 pub use readings::{Readings, ValueMoments, ValueOutOfRange};
 pub use record::{Dial, Record, Timing};
+pub use sensor_type::{LimitOf, Mark, SensitivityUnit, SensorMode, SensorType, TypeLimit};
 pub use stillness::{settled_stretch, still_stretches};
 pub use units::{ARCMIN_RAD, Angle, Code, STANDARD_GRAVITY_M_S2};

@@ -5,8 +5,9 @@ use std::path::Path;
 use tumble_core::assess::{AssessError, assess};
 use tumble_core::estimate::EstimateOptions;
 
+use crate::catalogue::UserCatalogue;
 use crate::error::ReadError;
-use crate::folder::read_experiment;
+use crate::folder::read_experiment_with;
 use crate::passport::{self, Passport};
 use crate::source::Watch;
 
@@ -19,6 +20,8 @@ pub struct CertifyOptions {
     pub id: Option<String>,
     /// Day of issue; else the folder's.
     pub issued: Option<String>,
+    /// Types of sensors over the folder's and the built-in ones.
+    pub catalogue: Option<UserCatalogue>,
 }
 
 /// An experiment that could not be certified: nothing was judged.
@@ -53,7 +56,8 @@ pub fn certify_watched(
     options: &CertifyOptions,
     watch: &dyn Watch,
 ) -> Result<Passport, CertifyError> {
-    let read = read_experiment(folder, watch).map_err(CertifyError::Read)?;
+    let read = read_experiment_with(folder, options.catalogue.as_ref(), watch)
+        .map_err(CertifyError::Read)?;
     let mut assessment =
         assess(&read.experiment, &options.estimate).map_err(CertifyError::Assess)?;
     assessment.findings.extend(read.findings.iter().cloned());

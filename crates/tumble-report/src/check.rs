@@ -183,8 +183,10 @@ pub fn init_summary(draft: &InitDraft) -> String {
         }
     }
     let mut group = |heading: &str, items: &[tumble_io::Assumed]| {
-        let worth: Vec<_> =
-            items.iter().filter(|a| !a.why.is_empty() || heading != "Seen").collect();
+        let worth: Vec<_> = items
+            .iter()
+            .filter(|a| heading != "Seen" || !a.why.is_empty() && a.value != "\"\"")
+            .collect();
         if worth.is_empty() {
             return;
         }

@@ -10,6 +10,7 @@
 //! Coefficients are shown only where the contract allows: accepted, or indeterminate for want of runs alone. A
 //! rejected passport gets a report of why.
 
+mod catalogue;
 mod check;
 mod explain;
 mod figure;
@@ -23,6 +24,7 @@ mod summary;
 mod units;
 mod words;
 
+pub use catalogue::{catalogue, catalogue_converter, catalogue_entry};
 pub use check::{check_table, init_summary};
 pub use explain::{explanation_list, explanation_page, explanations};
 pub use figure::{Figure, figures};

@@ -89,7 +89,7 @@ fn unreadable() -> Passport {
         reasons: Vec::new(),
         missing: vec!["a number in this passport is not finite: it cannot be shown".into()],
         conformity: p::Conformity { status: "not_assessed".into() },
-        sensor: p::Sensor { model: unknown(), serial: unknown(), axis: unknown() },
+        sensor: p::Sensor { model: unknown(), serial: unknown(), axis: unknown(), kind: None },
         output: p::Output {
             quantizer: unknown(),
             unit: "LSB".into(),

@@ -35,6 +35,8 @@ pub(crate) enum Command {
     Simulate(Box<SimulateArgs>),
     /// Turn codes into m/s² with a passport.
     Compensate(CompensateArgs),
+    /// List the known types of sensors, with limits and sources.
+    Catalogue(CatalogueArgs),
     /// Explain findings: what was seen, why it matters, what to do.
     Explain(ExplainArgs),
     /// Print completions for a shell.
@@ -185,6 +187,9 @@ pub(crate) struct CertifyArgs {
     /// Level of confidence of all intervals.
     #[arg(long, default_value_t = 0.95, value_parser = level)]
     pub(crate) level: f64,
+    /// Your own types of sensors, over the folder's catalogue.toml and the built-in ones.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) catalogue: Option<PathBuf>,
     /// Number of the certificate.
     #[arg(long)]
     pub(crate) id: Option<String>,
@@ -452,4 +457,26 @@ pub(crate) struct ManArgs {
     /// Overwrite pages of the same names that differ.
     #[arg(long, requires = "out")]
     pub(crate) replace: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Limits of a sensor's type warn in `certify` (T0125) where [sensor] model names
+an entry; they never reject. Every number says whether it is verified.
+
+Examples:
+  tumble catalogue
+  tumble catalogue ADXL203
+  tumble catalogue --catalogue my-parts.toml my-board
+  tumble catalogue MPU-6050 --json | jq .modes")]
+pub(crate) struct CatalogueArgs {
+    /// One model in full; case and punctuation do not matter.
+    #[arg(value_name = "MODEL")]
+    pub(crate) model: Option<String>,
+    /// Your own types of sensors, over the built-in ones.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) catalogue: Option<PathBuf>,
+    /// Print JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
 }

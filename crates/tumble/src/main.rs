@@ -21,6 +21,7 @@ fn main() -> std::process::ExitCode {
         cli::Command::Explain(a) => commands::explain::run(&a),
         cli::Command::Completions(a) => commands::completions::run(&a),
         cli::Command::Man(a) => commands::man::run(&a),
+        cli::Command::Catalogue(a) => commands::catalogue::run(&a),
     };
     code.into()
 }

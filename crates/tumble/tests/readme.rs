@@ -66,6 +66,8 @@ fn links_lead_somewhere() {
         "docs/likelihood.md",
         "docs/passport.md",
         "docs/findings.md",
+        "docs/experiment.md",
+        "docs/catalogue.md",
     ] {
         let text = std::fs::read_to_string(root().join(document)).unwrap();
         let folder = root().join(document).parent().unwrap().to_path_buf();

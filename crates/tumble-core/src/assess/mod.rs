@@ -147,6 +147,15 @@ pub fn assess(
     let structure = structure_findings(&runs, &mut findings);
     let influence = influence(&runs, k0.value_m_s2_per_lsb, options.level);
     findings.extend(influence.findings());
+    if !contradicted {
+        findings.extend(judge::type_limits(&judge::Judged {
+            experiment,
+            nominal_scale_m_s2_per_lsb: k0.value_m_s2_per_lsb,
+            runs: &runs,
+            pooled: &pooled,
+            influence: &influence,
+        }));
+    }
     let error_level = error_level(&runs, &setting);
     findings.extend(error_level.iter().filter_map(ErrorLevel::finding));
     findings.push(budget_finding());

@@ -18,6 +18,7 @@ mod settled;
 mod slip;
 mod structure;
 mod table;
+mod type_limits;
 mod unit;
 mod upright;
 mod wrap;
@@ -32,6 +33,7 @@ pub use run_hygiene::{Hygiene, data_hygiene};
 pub use settled::settled;
 pub use structure::{Structure, structure};
 pub use table::{noise, slow_noise, table};
+pub use type_limits::{Judged, type_limits};
 
 /// Thresholds that the explanations name, so that text and judgement cannot drift apart.
 pub(crate) mod limits {

@@ -156,7 +156,12 @@ pub fn experiment(truth: &Truth) -> Experiment {
         })
         .collect();
     Experiment {
-        sensor: Sensor { model: "simulated".into(), serial: "0".into(), axis: "X".into() },
+        sensor: Sensor {
+            model: "simulated".into(),
+            serial: "0".into(),
+            axis: "X".into(),
+            kind: None,
+        },
         output: Output {
             quantizer: truth.quantizer,
             unit: "LSB".into(),

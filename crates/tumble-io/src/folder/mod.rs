@@ -11,6 +11,7 @@ use tumble_core::{
 };
 
 use crate::advice::with_similar_names;
+use crate::catalogue::{CATALOGUE_FILE, Catalogue, UserCatalogue};
 use crate::csv::{Dialect, Discard, Dwell, Mapping, RunFileOptions, read_run_file};
 use crate::error::{Place, Problem, ReadError};
 use crate::experiment_file::{
@@ -62,6 +63,15 @@ pub struct RunRemark {
 /// **Errors** [`ReadError`] with file, line, column and remedy for everything that is not understood. Degenerate
 /// data are no error here.
 pub fn read_experiment(folder: &Path, watch: &dyn Watch) -> Result<ExperimentFolder, ReadError> {
+    read_experiment_with(folder, None, watch)
+}
+
+/// The same, with a catalogue over the folder's own and the built-in one.
+pub fn read_experiment_with(
+    folder: &Path,
+    catalogue: Option<&UserCatalogue>,
+    watch: &dyn Watch,
+) -> Result<ExperimentFolder, ReadError> {
     let toml_path = folder.join(EXPERIMENT_FILE);
     let bytes = std::fs::read(&toml_path).map_err(|e| match e.kind() {
         std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory => ReadError {
@@ -70,13 +80,14 @@ pub fn read_experiment(folder: &Path, watch: &dyn Watch) -> Result<ExperimentFol
         },
         _ => ReadError { place: Place::file(EXPERIMENT_FILE), problem: Problem::Io(e) },
     })?;
-    read_described(folder, &bytes, watch)
+    read_described(folder, &bytes, catalogue, watch)
 }
 
 /// Reads a folder as a text describes it that stands in it or is to stand there.
 pub(crate) fn read_described(
     folder: &Path,
     bytes: &[u8],
+    catalogue: Option<&UserCatalogue>,
     watch: &dyn Watch,
 ) -> Result<ExperimentFolder, ReadError> {
     let text = std::str::from_utf8(bytes).map_err(|_| ReadError {
@@ -108,6 +119,14 @@ pub(crate) fn read_described(
         dialect: &dialect,
         watch,
     };
+    let own = reader.catalogue()?;
+    let over: Vec<&UserCatalogue> = own.iter().chain(catalogue).collect();
+    inputs.extend(over.iter().map(|c| c.input.clone()));
+    let kind = over
+        .iter()
+        .fold(Catalogue::builtin().clone(), |all, user| all.with(&user.catalogue))
+        .find(&file.sensor.model)
+        .map(|e| e.sensor_type.clone());
     let vertical = match &file.scale {
         Some(scale) => Some(reader.vertical(scale, &names, &mut inputs, &mut findings)?),
         None => None,
@@ -134,6 +153,7 @@ pub(crate) fn read_described(
                 model: file.sensor.model.clone(),
                 serial: file.sensor.serial.clone(),
                 axis: file.sensor.axis.clone(),
+                kind,
             },
             output,
             bench,
@@ -232,6 +252,15 @@ impl Reader<'_> {
         let real = path.canonicalize().map_err(io)?;
         let root = self.folder.canonicalize().map_err(io)?;
         if real.starts_with(root) { Ok(path) } else { Err(outside()) }
+    }
+
+    /// The folder's own catalogue, where there is one.
+    fn catalogue(&self) -> Result<Option<UserCatalogue>, ReadError> {
+        if self.folder.join(CATALOGUE_FILE).symlink_metadata().is_err() {
+            return Ok(None);
+        }
+        let path = self.inside(CATALOGUE_FILE)?;
+        Catalogue::read_as(&path, CATALOGUE_FILE, CATALOGUE_FILE).map(Some)
     }
 
     /// Runs in parallel, combined in the order of experiment.toml.

@@ -144,7 +144,7 @@ fn common_folder(files: &[PathBuf]) -> Result<PathBuf, ReadError> {
 
 /// Reads what the draft describes.
 fn read(draft: &Draft, folder: &Path, watch: &dyn Watch) -> Result<ExperimentFolder, ReadError> {
-    read_described(folder, draft.toml().as_bytes(), watch)
+    read_described(folder, draft.toml().as_bytes(), None, watch)
 }
 
 /// Files as runs, as one file an angle, as up and down, or as continuous records.

@@ -10,6 +10,7 @@ use super::draft::{Draft, Kind, quoted};
 use super::read;
 use super::roles::{Roles, angle_unit};
 use super::survey::Survey;
+use crate::catalogue::Catalogue;
 use crate::csv::HeaderUnit;
 use crate::error::{Place, Problem, ReadError};
 use crate::folder::ExperimentFolder;
@@ -21,6 +22,9 @@ const CANDIDATES: usize = 8;
 const BAD_FIT: f64 = 0.003;
 /// How many times better another reading of the file must fit before it is assumed.
 const MUCH_BETTER: f64 = 5.0;
+/// Logarithm of the ratio to a mode's scale factor up to which the unit is taken to be in that mode: modes differ by
+/// factors of two.
+const NEAR_MODE: f64 = 0.25;
 /// Word lengths of converters.
 const WORDS: [u32; 9] = [8, 10, 12, 14, 16, 18, 20, 24, 32];
 
@@ -400,6 +404,12 @@ impl Refiner<'_> {
             "m/s2" => Some(1.0),
             _ => None,
         };
+        if exact.is_none()
+            && let Some((scale, why)) = self.scale_of_type(unit, seen)
+        {
+            self.draft.set("output", "nominal_scale", format!("{scale:?}"), why, Kind::Seen);
+            return;
+        }
         match exact {
             Some(scale) => {
                 let why = format!("m/s² per {unit}");
@@ -416,6 +426,27 @@ impl Refiner<'_> {
                 ));
             }
         }
+    }
+
+    /// The data sheet's scale factor, where the model names an entry with a mode near what is seen.
+    fn scale_of_type(&self, unit: &str, seen: &FirstLook) -> Option<(f64, String)> {
+        let entry = Catalogue::builtin().find(self.facts.model.as_deref()?)?;
+        let fitted = seen.scale_m_s2(STANDARD_GRAVITY_M_S2);
+        let (scale, mode) = entry
+            .modes()
+            .iter()
+            .filter_map(|m| m.nominal_scale_m_s2_per(unit).map(|scale| (scale, m)))
+            .min_by(|a, b| (a.0 / fitted).ln().abs().total_cmp(&(b.0 / fitted).ln().abs()))?;
+        let near = (scale / fitted).ln().abs() < NEAR_MODE;
+        let why = format!(
+            "m/s² per {unit}: {} {} of {}, {} ({})",
+            mode.sensitivity,
+            mode.unit.name(),
+            entry.model(),
+            mode.name,
+            mode.mark.words()
+        );
+        near.then(|| (rounded(scale, 7), why))
     }
 
     /// Whether ±90° stand on the table like all others.

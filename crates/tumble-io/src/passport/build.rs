@@ -39,6 +39,11 @@ pub fn build(
             model: experiment.sensor.model.clone(),
             serial: experiment.sensor.serial.clone(),
             axis: experiment.sensor.axis.clone(),
+            kind: experiment.sensor.kind.as_ref().map(|k| wire::SensorType {
+                model: k.model.clone(),
+                catalogue: k.catalogue.clone(),
+                source: k.source.clone(),
+            }),
         },
         output: wire::Output {
             quantizer: quantizer_name(experiment.output.quantizer).into(),

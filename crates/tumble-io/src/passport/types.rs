@@ -54,6 +54,16 @@ pub struct Sensor {
     pub model: String,
     pub serial: String,
     pub axis: String,
+    #[serde(default, rename = "type", skip_serializing_if = "Option::is_none")]
+    pub kind: Option<SensorType>,
+}
+
+/// The catalogue's entry that the unit was held against.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SensorType {
+    pub model: String,
+    pub catalogue: String,
+    pub source: String,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -19,6 +19,9 @@ pub(super) fn front(page: &Page<'_>) -> Markup {
             div .pair {
                 (definitions(&[
                     ("Model", one_line(&p.sensor.model)),
+                    ("Type", p.sensor.kind.as_ref().map(|k| {
+                        one_line(&format!("{} of the catalogue ({})", k.model, k.catalogue))
+                    }).unwrap_or_default()),
                     ("Serial number", one_line(&p.sensor.serial)),
                     ("Axis", one_line(&p.sensor.axis)),
                     ("Passport number", if p.id.is_empty() { "none given".into() } else { one_line(&p.id) }),

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use tumble_core::estimate::{EstimateOptions, Method, Weights};
 use tumble_io::passport::Passport;
 use tumble_io::{
-    CertifyError, CertifyOptions, Existing, OutputError, OutputFolder, Written, certify_watched,
+    Catalogue, CertifyError, CertifyOptions, Existing, OutputError, OutputFolder, Written,
+    certify_watched,
 };
 
 use crate::cli::{CertifyArgs, MethodArg, WeightsArg};
@@ -17,9 +18,9 @@ use crate::progress::Progress;
 pub(crate) fn run(args: &CertifyArgs) -> Exit {
     let options = match options(args) {
         Ok(options) => options,
-        Err(why) => {
+        Err((why, exit)) => {
             complain(why);
-            return Exit::Usage;
+            return exit;
         }
     };
     let several = args.folders.len() > 1;
@@ -61,7 +62,8 @@ pub(crate) fn run(args: &CertifyArgs) -> Exit {
     worst
 }
 
-fn options(args: &CertifyArgs) -> Result<CertifyOptions, &'static str> {
+fn options(args: &CertifyArgs) -> Result<CertifyOptions, (String, Exit)> {
+    let usage = |why: &str| (why.to_owned(), Exit::Usage);
     let method = match args.method {
         MethodArg::Paper => Method::Paper,
         MethodArg::Exact => Method::Exact,
@@ -69,14 +71,14 @@ fn options(args: &CertifyArgs) -> Result<CertifyOptions, &'static str> {
     };
     let weights = match (args.method, args.weights) {
         (MethodArg::Paper, Some(WeightsArg::Angle | WeightsArg::Stated)) => {
-            return Err(
+            return Err(usage(
                 "--method paper is unweighted by definition; leave --weights out, or use another method",
-            );
+            ));
         }
         (MethodArg::Exact, Some(WeightsArg::Stated)) => {
-            return Err(
+            return Err(usage(
                 "--weights stated is for --method likelihood; --method exact takes angle or equal",
-            );
+            ));
         }
         (MethodArg::Paper, _) | (_, Some(WeightsArg::Equal)) => Weights::Equal,
         (_, Some(WeightsArg::Stated)) => Weights::Stated,
@@ -86,6 +88,10 @@ fn options(args: &CertifyArgs) -> Result<CertifyOptions, &'static str> {
         estimate: EstimateOptions { method, weights, level: args.level },
         id: args.id.clone(),
         issued: args.issued.clone(),
+        catalogue: args.catalogue.as_deref().map(Catalogue::read).transpose().map_err(|e| {
+            let exit = Exit::of_reading(&e);
+            (e.to_string(), exit)
+        })?,
     })
 }
 

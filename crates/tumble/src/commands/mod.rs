@@ -1,5 +1,6 @@
 //! One file a command.
 
+pub(crate) mod catalogue;
 pub(crate) mod certify;
 pub(crate) mod check;
 pub(crate) mod compensate;
