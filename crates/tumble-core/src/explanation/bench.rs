@@ -2,7 +2,9 @@
 
 use super::Explanation;
 use crate::assess::INFLUENCE_SIGNIFICANCE;
-use crate::judge::limits::{LITTLE_DITHER_LSB2, NOTEWORTHY_FACTOR, SLOW_NOISE, TABLE_SIGNIFICANCE};
+use crate::judge::limits::{
+    LITTLE_DITHER_LSB2, NOTEWORTHY_FACTOR, RANGE_LIMIT_DEG, SLOW_NOISE, TABLE_SIGNIFICANCE,
+};
 use crate::nominal::DISAGREEMENT_LIMIT;
 use crate::{DEFAULT_VERTICAL_LEAN_ARCMIN, STANDARD_GRAVITY_M_S2};
 
@@ -204,7 +206,10 @@ pub(super) fn slow_noise() -> Explanation {
 
 pub(super) fn angle_outside_range() -> Explanation {
     Explanation::new(
-        "Dwells stand at angles outside `angle_range_deg` in [bench], and are not upright (±90°) either.",
+        format!(
+            "Dwells stand more than {RANGE_LIMIT_DEG}° outside `angle_range_deg` in [bench], and are not upright (±90°) \
+             either."
+        ),
         "Either the angle is wrong, or the table goes further than you say. Beyond its range a dial is often no longer \
          checked.",
         "Check the named angles against your notes. If they are right, write the true range, for instance \

@@ -1,24 +1,36 @@
 //! T0118 to T0130, T0314, T0317 to T0319: what the record itself gives away.
 
 use super::Explanation;
+use crate::judge::limits::{
+    CODES_PER_G, DOES_NOT_FIT, DOES_NOT_FIT_LSB, FAR, FAR_BLOCK, FAR_LSB, FEWEST_BLOCKS,
+    FEWEST_DWELLS, HARM_LSB, HARM_SCATTERS, MISFIT_LEVEL, MISSING_SAMPLES, MISSING_SHARE,
+    MOTION_SIGNIFICANT, RATE_LIMIT, UNIT_FACTOR, WRAP_BETTER, WRONG_SHARE,
+};
 
 const HYGIENE: &str = "method, section 5 (data hygiene)";
 
 pub(super) fn codes_wrap() -> Explanation {
     Explanation::new(
-        "The codes jump from one end of a power of two to the other where the reading passes zero: signed words of \
-         the converter (two's complement) were read as unsigned.",
+        format!(
+            "The codes jump from one end of a power of two to the other where the reading passes zero: signed words of \
+             the converter (two's complement) were read as unsigned. With the sign put back the run follows its angles \
+             {WRAP_BETTER} times better."
+        ),
         "A reading of -1 then stands as 65535 in a word of 16 bits. Averages over such codes mean nothing.",
-        "Read the word as signed in the logger. In a file that exists already, subtract 65536 from every code of \
-         32768 and more (16 bits), or 4096 from every code of 2048 and more (12 bits).",
+        "Write `code_bits = 16` in [csv] (the width of the word that the finding names): the codes are then read with \
+         their sign. Next time read the word as signed in the logger.",
         HYGIENE,
     )
 }
 
 pub(super) fn mistyped_angle() -> Explanation {
     Explanation::new(
-        "One angle contradicts the others by far, and another angle that differs from it by a slip of the pen (12 for \
-         21, a lost sign, a lost decimal point) would fit. It is judged by leaving that position out.",
+        format!(
+            "One angle contradicts the others, and a number that differs from it by a slip of the pen (12 for 21, a lost \
+             sign, a lost decimal point, the angle before not advanced) would fit. It is judged by leaving that position \
+             out of the fit, in runs of {FEWEST_DWELLS} positions and more, at a level of {MISFIT_LEVEL} a run. Up to one \
+             position in {WRONG_SHARE} can be named."
+        ),
         "One wrong angle bends the whole fit. 9° in one of 60 positions can move the bias further than all noise \
          together.",
         "Look into the notes of the measurement. If they show the other angle, correct it in the file. If they show \
@@ -30,8 +42,11 @@ pub(super) fn mistyped_angle() -> Explanation {
 
 pub(super) fn zero_rows() -> Explanation {
     Explanation::new(
-        "The record ends in rows of zeros that do not belong to the readings before them. Loggers fill an unfinished \
-         block that way.",
+        format!(
+            "The record ends in rows of zeros that do not belong to the readings before them: the others expect a \
+             reading more than {DOES_NOT_FIT} standard deviations and {DOES_NOT_FIT_LSB} LSB away, or zero stands far \
+             outside its own dwell. Loggers fill an unfinished block that way."
+        ),
         "Zeros are legal codes. Averaged in, they pull their dwell toward zero, and if the angle is zero as well they \
          count as a dwell that nobody measured.",
         "Remove the zero rows from the end of the file. If dwells are missing because the logger stopped early, \
@@ -42,8 +57,10 @@ pub(super) fn zero_rows() -> Explanation {
 
 pub(super) fn dwell_does_not_fit() -> Explanation {
     Explanation::new(
-        "One position contradicts the fit of all the others (leave one out), and no slip of the pen explains its \
-         angle.",
+        format!(
+            "One position contradicts the fit of all the others (leave one out, at a level of {MISFIT_LEVEL} a run), and \
+             no slip of the pen explains its angle."
+        ),
         "If the reading or the angle is wrong, the position pulls all values its way. If it is right, the model does not hold there.",
         "Measure that angle once more. If the new dwell fits, the first one was disturbed: remove it and say so in \
          `note`. If it does not, look at the table there: a worn spot, a cable that pulls, a stop.",
@@ -53,19 +70,26 @@ pub(super) fn dwell_does_not_fit() -> Explanation {
 
 pub(super) fn dwell_drifts() -> Explanation {
     Explanation::new(
-        "The reading moves steadily in one direction through a dwell, more than its noise explains.",
+        format!(
+            "The reading moves in one direction through a dwell: by {MOTION_SIGNIFICANT} standard errors of its blocks \
+             ({FEWEST_BLOCKS} blocks and more), more than the other dwells of the run do, and by enough to shift its mean \
+             by {HARM_SCATTERS} times the scatter of the positions and {HARM_LSB} LSB."
+        ),
         "The table was still creeping, or the sensor was still warming up. The mean of the dwell belongs to no single \
          angle and no single temperature.",
         "Wait after each setting until the reading stands, or throw the start of each dwell away: `discard_s = 2.0` in \
-         its [[run]]. If dwells drift all through the run, let the sensor warm up before it.",
+         its [[run]], or `discard_s = \"detect\"`. If dwells drift all through the run, let the sensor warm up before it.",
         HYGIENE,
     )
 }
 
 pub(super) fn dwell_two_levels() -> Explanation {
     Explanation::new(
-        "The reading stands at one level in the first part of a dwell and at another in the rest, more than its noise \
-         explains.",
+        format!(
+            "The reading stands at one level in the first part of a dwell and at another in the rest: {MOTION_SIGNIFICANT} \
+             standard errors apart, and enough to shift the mean by {HARM_SCATTERS} times the scatter of the positions \
+             and {HARM_LSB} LSB."
+        ),
         "The table or the sensor moved, or somebody touched the bench. The mean is neither of the two levels, and at \
          0° one minute of arc is already 0.37 LSB of the paper's sensor.",
         "Clamp the platform before the dwell starts and let go of it. Measure that angle again, or keep only the part \
@@ -76,7 +100,10 @@ pub(super) fn dwell_two_levels() -> Explanation {
 
 pub(super) fn outlying_samples() -> Explanation {
     Explanation::new(
-        "Single samples stand so far from the rest of their dwell that its noise does not explain them.",
+        format!(
+            "Single samples stand farther from the middle of their dwell than {FAR} robust standard deviations and \
+             {FAR_LSB} LSB. Of real readings only blocks are kept: there it is a block beyond {FAR_BLOCK} of them."
+        ),
         "Spikes come from the link, the supply or a knock on the bench. A few of them move the mean of a dwell, and \
          they make the noise look larger than it is.",
         "Look at the named lines. Mend the cause (cable, grounding, a lost bit) and measure the dwell again; remove \
@@ -109,18 +136,25 @@ pub(super) fn time_backwards() -> Explanation {
 
 pub(super) fn rate_disagrees() -> Explanation {
     Explanation::new(
-        "The recorded times run at another rate than `rate_hz` in [output] says.",
+        format!(
+            "The recorded times run at another rate than `rate_hz` in [output] says, by more than {} %.",
+            100.0 * RATE_LIMIT
+        ),
         "`discard_s` and everything that counts in seconds cut at the wrong row. Bias and scale do not depend on the \
          rate, but noise densities do.",
-        "Write the rate that the record shows as `rate_hz` in [output], or check whether the time column counts in \
-         milliseconds instead of seconds.",
+        "Write the rate that the record shows as `rate_hz` in [output], or, where the times count \
+         milliseconds, `time_unit = \"ms\"` in [csv].",
         HYGIENE,
     )
 }
 
 pub(super) fn missing_samples() -> Explanation {
     Explanation::new(
-        "Between two recorded times there is room for samples that are not in the record.",
+        format!(
+            "Between recorded times there is room for samples that are not in the record: {MISSING_SAMPLES} of a dwell, \
+             or more than {} % of it.",
+            100.0 * MISSING_SHARE
+        ),
         "The mean of the dwell hardly suffers. But samples are often lost when something disturbs the link, and then \
          the neighbours deserve a look.",
         "Check link and logger for lost packets. If only a few samples of a long dwell are gone, go on; if a large part \
@@ -141,8 +175,11 @@ pub(super) fn repeated_samples() -> Explanation {
 
 pub(super) fn unit_is_not_the_scales() -> Explanation {
     Explanation::new(
-        "The readings are real numbers of a size that does not go with a nominal scale per LSB: volts, g or m/s² stand \
-         where codes should be.",
+        format!(
+            "The readings are of a size that does not go with the nominal scale: by a factor of {UNIT_FACTOR} and more, or \
+             fewer than {CODES_PER_G} codes per g. Volts, g or m/s² stand where codes should be, or the scale is one per \
+             another unit."
+        ),
         "Scale and bias would come out in the wrong unit, and wrong by the size of an LSB.",
         "For readings in volts write in [output] `quantizer = \"none\"`, `unit = \"V\"` and `nominal_scale` in m/s² per \
          volt, and call the column `output`. Otherwise log the converter's codes.",

@@ -9,12 +9,12 @@ use crate::stats::student_p_value;
 use crate::{Position, Quantizer, Seat};
 
 /// Fewest dwells for leaving one out: two degrees of freedom remain.
-const FEWEST: usize = 6;
+pub(crate) const FEWEST: usize = 6;
 /// One dwell of so many may be wrong; more are no single dwells but another fault of the run.
-const WRONG_SHARE: usize = 6;
+pub(crate) const WRONG_SHARE: usize = 6;
 /// Level of the test for a whole run, Bonferroni over its dwells: an experiment of five honest runs raises it once
 /// in two thousand.
-const LEVEL: f64 = 1e-4;
+pub(crate) const LEVEL: f64 = 1e-4;
 /// Unknowns of the exact form.
 const UNKNOWNS: usize = 3;
 /// Triples that the search starts from. With a sixth of the dwells wrong, more than half of them are clean.

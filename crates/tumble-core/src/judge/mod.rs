@@ -37,12 +37,20 @@ pub use type_limits::{Judged, type_limits};
 
 /// Thresholds that the explanations name, so that text and judgement cannot drift apart.
 pub(crate) mod limits {
+    pub(crate) use super::dwell_fit::{
+        FEWEST as FEWEST_DWELLS, LEVEL as MISFIT_LEVEL, WRONG_SHARE,
+    };
     pub(crate) use super::hygiene::STUCK_LIMIT_LSB;
     pub(crate) use super::identifiable::CONDITION_WARNING;
+    pub(crate) use super::motion::{
+        FEWEST_BLOCKS, HARM_LSB, HARM_SCATTERS, SIGNIFICANT as MOTION_SIGNIFICANT,
+    };
+    pub(crate) use super::outlying::{FAR, FAR_BLOCK, FAR_LSB};
     pub(crate) use super::plausible::{
         BIAS_UNUSUAL_M_S2, MISALIGNMENT_LIMIT_RAD, MISALIGNMENT_UNUSUAL_RAD, SCALE_ERROR_LIMIT,
         SCALE_ERROR_UNUSUAL, UNITS_RATIO,
     };
+    pub(crate) use super::recorded::{MISSING_SAMPLES, MISSING_SHARE, RANGE_LIMIT_DEG, RATE_LIMIT};
     pub(crate) use super::reproducible::FEW;
     pub(crate) use super::settled::STEP_LIMIT;
     pub(crate) use super::structure::{MATERIAL_SHARE, SIGNIFICANCE as STRUCTURE_SIGNIFICANCE};
@@ -50,4 +58,7 @@ pub(crate) mod limits {
         HOPELESS_DEG, LITTLE_DITHER_LSB2, NOTEWORTHY_FACTOR, SIGNIFICANCE as TABLE_SIGNIFICANCE,
         SLOW_NOISE,
     };
+    pub(crate) use super::unit::{CODES_PER_G, FACTOR as UNIT_FACTOR};
+    pub(crate) use super::wrap::BETTER as WRAP_BETTER;
+    pub(crate) use super::zero_rows::{DOES_NOT_FIT, DOES_NOT_FIT_LSB};
 }

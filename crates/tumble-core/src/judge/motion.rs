@@ -6,19 +6,19 @@ use crate::stats::student_factor;
 use crate::{Finding, FindingKind, Output, Position, Quantizer, Readings, ValueMoments};
 
 /// Fewest blocks in which a movement can be told from noise.
-const FEWEST_BLOCKS: usize = 16;
+pub(crate) const FEWEST_BLOCKS: usize = 16;
 /// Fewest blocks on either side of a jump: one wild sample makes one wild block, and is no level.
 const FEWEST_ASIDE: usize = 4;
 /// Student statistic from which a movement is real. White noise passes it once in 10⁵ dwells of sixteen blocks and once
 /// in 10⁸ of 46; that a jump's place is free costs a factor of ten.
-const SIGNIFICANT: f64 = 7.0;
+pub(crate) const SIGNIFICANT: f64 = 7.0;
 /// What a movement must do to the dwell's mean, in scatters of the positions: less is lost in them.
-const HARM_SCATTERS: f64 = 1.5;
+pub(crate) const HARM_SCATTERS: f64 = 1.5;
 /// Level at which a dwell's trend must differ from no trend, in the spread of the trends of all dwells. A bias that
 /// walks gives every dwell a trend, up or down: none is singled out. Dwells that all settle alike have little spread.
 const UNUSUAL_LEVEL: f64 = 1.0 - 1e-5;
 /// What it must do to the mean where noise dithers, LSB.
-const HARM_LSB: f64 = 0.25;
+pub(crate) const HARM_LSB: f64 = 0.25;
 /// The same where a code's edge turns any movement into a whole LSB.
 const HARM_QUIET_LSB: f64 = 0.6;
 /// Least change from level to level there, LSB.

@@ -7,9 +7,9 @@ use crate::{
 };
 
 /// Distance from the median in robust standard deviations: of 10¹⁵ Gaussian samples one lies so far out.
-const FAR: f64 = 8.0;
+pub(crate) const FAR: f64 = 8.0;
 /// And so many LSB more: in a quiet dwell the middle half is one code.
-const FAR_LSB: f64 = 2.0;
+pub(crate) const FAR_LSB: f64 = 2.0;
 /// Least standard deviation of codes, LSB: quantization alone gives 1/√12.
 const LEAST_SPREAD_LSB: f64 = 0.3;
 /// Fewest samples whose middle says anything.
@@ -18,7 +18,7 @@ const FEWEST: u64 = 20;
 const FEW: u64 = 100;
 /// Robust standard deviations from which a block of real readings holds a wild one. More than of codes: slow noise
 /// moves blocks.
-const FAR_BLOCK: f64 = 12.0;
+pub(crate) const FAR_BLOCK: f64 = 12.0;
 /// Codes that are listed.
 const LISTED: usize = 4;
 

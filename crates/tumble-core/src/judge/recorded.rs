@@ -3,15 +3,15 @@
 use crate::{Bench, Finding, FindingKind, Output, Position, Record, Seat, Timing};
 
 /// Relative difference of rates that is worth a warning: crystals keep to 1e-4, RC oscillators in sensors to 5 %.
-const RATE_LIMIT: f64 = 0.05;
+pub(crate) const RATE_LIMIT: f64 = 0.05;
 /// Fewest steps that tell a rate.
 const FEWEST_STEPS: u64 = 10;
 /// Samples missing in a dwell that are worth a warning.
-const MISSING_SAMPLES: u64 = 3;
+pub(crate) const MISSING_SAMPLES: u64 = 3;
 /// The same as a share of the dwell.
-const MISSING_SHARE: f64 = 0.01;
+pub(crate) const MISSING_SHARE: f64 = 0.01;
 /// Degrees beyond the table's range that are worth a warning: a stop is not set finer.
-const RANGE_LIMIT_DEG: f64 = 0.5;
+pub(crate) const RANGE_LIMIT_DEG: f64 = 0.5;
 
 /// Dwells of a run of which something is true.
 struct Hits<'a> {

@@ -4,9 +4,9 @@ use crate::{Finding, FindingKind, Output, Quantizer, STANDARD_GRAVITY_M_S2};
 
 /// Factor from which a scale of real readings is another unit's: sensors of one type differ by two to eight (their
 /// ranges), units by 9.8 (T0102) or 100 and more.
-const FACTOR: f64 = 20.0;
+pub(crate) const FACTOR: f64 = 20.0;
 /// Codes per g below which no converter counts: such numbers are volts, g or m/s².
-const CODES_PER_G: f64 = 10.0;
+pub(crate) const CODES_PER_G: f64 = 10.0;
 /// Relative width around a factor that is a unit's.
 const WIDTH: f64 = 0.12;
 

@@ -6,7 +6,7 @@ use crate::{Finding, FindingKind, Position, Readings, Seat};
 /// Widths of words, bits.
 const WIDTHS: std::ops::RangeInclusive<u32> = 8..=32;
 /// How much better the run must follow its angles with the sign put back.
-const BETTER: f64 = 10.0;
+pub(crate) const BETTER: f64 = 10.0;
 /// Scatter with the sign put back, over the amplitude, that is still a run on a table (1°).
 const FOLLOWS: f64 = 0.0175;
 /// Fewest dwells that show whether a run follows its angles.

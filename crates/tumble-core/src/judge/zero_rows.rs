@@ -5,9 +5,9 @@ use super::outlying::{outlying, usual_spread};
 use crate::{Code, CodeHistogram, Finding, FindingKind, Position, Quantizer, Readings};
 
 /// Standard deviations of the other dwells from which zero does not fit.
-const DOES_NOT_FIT: f64 = 6.0;
+pub(crate) const DOES_NOT_FIT: f64 = 6.0;
 /// And so many LSB.
-const DOES_NOT_FIT_LSB: f64 = 2.0;
+pub(crate) const DOES_NOT_FIT_LSB: f64 = 2.0;
 /// Zeros that close a dwell from which on they are a filled record, not a spike.
 const CLOSING: u64 = 3;
 
