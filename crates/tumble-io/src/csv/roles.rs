@@ -7,6 +7,8 @@
 pub(crate) enum HeaderUnit {
     Degrees,
     Gon,
+    /// Degrees in German, gon elsewhere.
+    Grad,
     Radians,
     Seconds,
     Milliseconds,
@@ -47,7 +49,8 @@ impl HeaderUnit {
             .collect();
         Some(match plain.as_str() {
             "°" | "deg" | "degree" | "degrees" | "grad°" | "º" => Self::Degrees,
-            "gon" | "grad" | "gradian" | "gradians" => Self::Gon,
+            "gon" | "gradian" | "gradians" => Self::Gon,
+            "grad" => Self::Grad,
             "rad" | "radian" | "radians" => Self::Radians,
             "s" | "sec" | "secs" | "second" | "seconds" | "с" => Self::Seconds,
             "ms" | "msec" | "millis" | "milliseconds" | "мс" => Self::Milliseconds,
@@ -75,6 +78,7 @@ impl HeaderUnit {
         match self {
             Self::Degrees => "degrees",
             Self::Gon => "gon",
+            Self::Grad => "Grad",
             Self::Radians => "radians",
             Self::Seconds => "s",
             Self::Milliseconds => "ms",
@@ -304,17 +308,17 @@ pub(crate) fn role(header: &str) -> Option<Role> {
     let by_word = || WORDS.iter().find(|(_, known)| words.iter().any(|w| known.contains(w)));
     let by_name = whole.or_else(by_word).map(|(role, _)| *role);
     match (by_name, unit) {
-        // `T [°C]` is no time.
+        // `T [°C]` is no time, and `X_Value (s)` no reading: names of readings are words for anything.
         (
-            Some(Role::Time) | None,
+            Some(Role::Time | Role::Reading) | None,
             Some(HeaderUnit::Celsius | HeaderUnit::Fahrenheit | HeaderUnit::Kelvin),
         ) => Some(Role::Temperature),
-        (Some(role), _) => Some(role),
-        (None, Some(HeaderUnit::Degrees | HeaderUnit::Gon | HeaderUnit::Radians)) => {
-            Some(Role::Angle)
-        }
         (
-            None,
+            Some(Role::Reading) | None,
+            Some(HeaderUnit::Degrees | HeaderUnit::Gon | HeaderUnit::Grad | HeaderUnit::Radians),
+        ) => Some(Role::Angle),
+        (
+            Some(Role::Reading) | None,
             Some(
                 HeaderUnit::Seconds
                 | HeaderUnit::Milliseconds
@@ -322,6 +326,7 @@ pub(crate) fn role(header: &str) -> Option<Role> {
                 | HeaderUnit::Nanoseconds,
             ),
         ) => Some(Role::Time),
+        (Some(role), _) => Some(role),
         (None, Some(_)) => Some(Role::Reading),
         (None, None) => None,
     }
@@ -376,6 +381,8 @@ mod tests {
             ("Table angle", Some(Role::Angle)),
             ("time (ms)", Some(Role::Time)),
             ("T [°C]", Some(Role::Temperature)),
+            ("X_Value (s)", Some(Role::Time)),
+            ("Wert [Grad]", Some(Role::Angle)),
             ("Temp_degC", Some(Role::Temperature)),
             ("acc_x", Some(Role::Reading)),
             ("ADC raw", Some(Role::Reading)),

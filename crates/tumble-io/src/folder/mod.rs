@@ -11,9 +11,9 @@ use tumble_core::{
 };
 
 use crate::csv::{Dialect, Discard, Dwell, Mapping, RunFileOptions, read_run_file};
-use crate::error::{Place, Problem, ReadError};
+use crate::error::{Place, Problem, ReadError, nearest};
 use crate::experiment_file::{
-    self, BenchTable, CsvTable, DiscardValue, Orientation, RunTable, ScaleTable,
+    self, BenchTable, CsvTable, DiscardValue, ExperimentFile, Orientation, RunTable, ScaleTable,
 };
 use crate::source::Watch;
 use settings::{bench, dialect, discard, mapping, missing, output, targets, value};
@@ -83,6 +83,16 @@ pub(crate) fn read_described(
         problem: Problem::Format { seen: "not UTF-8 text", remedy: "save the file as UTF-8" },
     })?;
     let file = experiment_file::parse(text, EXPERIMENT_FILE)?;
+    read_parsed(folder, &file, bytes, watch)
+        .map_err(|e| experiment_file::located(e, text, EXPERIMENT_FILE))
+}
+
+fn read_parsed(
+    folder: &Path,
+    file: &ExperimentFile,
+    bytes: &[u8],
+    watch: &dyn Watch,
+) -> Result<ExperimentFolder, ReadError> {
     if let Some(format) = file.format.filter(|f| *f != 1) {
         return Err(value("format", format, "1: this is a file of a newer version"));
     }
@@ -134,7 +144,7 @@ pub(crate) fn read_described(
             bench,
             vertical,
             runs,
-            targets: targets(&file)?,
+            targets: targets(file)?,
         },
         id: file.id.clone(),
         issued: file.issued.as_ref().map(experiment_file::date_text),
@@ -215,7 +225,13 @@ impl Reader<'_> {
         }
         let path = self.folder.join(relative);
         let io = |e| ReadError { place: Place::file(file), problem: Problem::Io(e) };
-        let real = path.canonicalize().map_err(io)?;
+        let real = path.canonicalize().map_err(|e| match e.kind() {
+            std::io::ErrorKind::NotFound => ReadError {
+                place: Place::file(EXPERIMENT_FILE),
+                problem: Problem::NoFile { path: file.to_owned(), nearest: neighbour(&path) },
+            },
+            _ => io(e),
+        })?;
         let root = self.folder.canonicalize().map_err(io)?;
         if real.starts_with(root) { Ok(path) } else { Err(outside()) }
     }
@@ -440,6 +456,18 @@ impl Reader<'_> {
         };
         Ok(VerticalPair { up: dwell(Seat::Up)?, down: dwell(Seat::Down)?, run: scale.run.clone() })
     }
+}
+
+/// A file in the folder of a path whose name is much like the path's.
+fn neighbour(path: &Path) -> Option<String> {
+    let wanted = path.file_name()?.to_string_lossy().into_owned();
+    let mut names: Vec<String> = std::fs::read_dir(path.parent()?)
+        .ok()?
+        .filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned()))
+        .filter(|name| name != EXPERIMENT_FILE)
+        .collect();
+    names.sort();
+    nearest(&wanted, &names)
 }
 
 /// An angle between −180° (exclusive) and 180°.
