@@ -360,7 +360,7 @@ impl fmt::Display for Problem {
                 } else if seen > expected {
                     "mend or remove the row, or put rows of another kind into a file of their own"
                 } else {
-                    "mend or remove the row (a truncated last line is common)"
+                    "mend or remove the row, or begin it with `#` (a truncated last line is common)"
                 }
             ),
             Self::Field { text, expected, remedy } if text.is_empty() => {

@@ -303,6 +303,9 @@ fn contradiction(
         ("t_s", U::Milliseconds) => time(TimeUnit::Milliseconds),
         ("t_s", U::Microseconds) => time(TimeUnit::Microseconds),
         ("t_s", U::Nanoseconds) => time(TimeUnit::Nanoseconds),
+        ("t_s", U::LongTime) => Some(
+            "times are read in s, ms, us and ns, or as dates: convert the column, or leave it out of `columns`".into(),
+        ),
         ("code", u) => u.of_readings().map(|of| {
             format!(
                 "codes are in LSB: write quantizer = \"none\" and unit = \"{of}\" in [output], and columns = {{output = \"{header}\"}}"

@@ -14,6 +14,8 @@ pub(crate) enum HeaderUnit {
     Milliseconds,
     Microseconds,
     Nanoseconds,
+    /// Minutes or hours.
+    LongTime,
     Volts,
     Millivolts,
     StandardGravity,
@@ -84,6 +86,7 @@ impl HeaderUnit {
             Self::Milliseconds => "ms",
             Self::Microseconds => "µs",
             Self::Nanoseconds => "ns",
+            Self::LongTime => "minutes or hours",
             Self::Volts => "V",
             Self::Millivolts => "mV",
             Self::StandardGravity => "g",
@@ -114,7 +117,10 @@ pub(crate) fn split_unit(header: &str) -> (&str, Option<HeaderUnit>) {
     let header = header.trim();
     for (open, close) in [('[', ']'), ('(', ')'), ('<', '>'), ('{', '}')] {
         if let Some((name, rest)) = header.split_once(open) {
-            let unit = HeaderUnit::named(rest.trim_end().trim_end_matches(close));
+            let text = rest.trim_end().trim_end_matches(close);
+            // `x_min` is a minimum, `t [min]` is not.
+            let long = matches!(text.trim(), "min" | "minutes" | "h" | "hours" | "hr");
+            let unit = HeaderUnit::named(text).or(long.then_some(HeaderUnit::LongTime));
             if unit.is_some() {
                 return (name.trim(), unit);
             }
@@ -323,7 +329,8 @@ pub(crate) fn role(header: &str) -> Option<Role> {
                 HeaderUnit::Seconds
                 | HeaderUnit::Milliseconds
                 | HeaderUnit::Microseconds
-                | HeaderUnit::Nanoseconds,
+                | HeaderUnit::Nanoseconds
+                | HeaderUnit::LongTime,
             ),
         ) => Some(Role::Time),
         (Some(role), _) => Some(role),
@@ -363,6 +370,9 @@ mod tests {
             ("Temp. [°C]", "Temp.", Some(U::Celsius)),
             ("T in °F", "T", Some(U::Fahrenheit)),
             ("angle_gon", "angle", Some(U::Gon)),
+            ("Zeit [min]", "Zeit", Some(U::LongTime)),
+            ("acc_min", "acc_min", None),
+            ("Winkel [Grad]", "Winkel", Some(U::Grad)),
             ("acc_x", "acc_x", None),
             ("code", "code", None),
             ("ADC", "ADC", Some(U::Lsb)),

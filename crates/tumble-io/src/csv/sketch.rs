@@ -9,7 +9,7 @@ use super::clock::date_s;
 use super::dial::dms;
 use super::dialect::Delimiter;
 use super::header::{decoded, names};
-use super::number::{CodeFormat, DecimalSign, real, says_missing, trimmed};
+use super::number::{CodeFormat, DecimalSign, has_thousands, real, says_missing, trimmed};
 use super::roles::{HeaderUnit, role, split_unit};
 use super::row::FieldBuffer;
 use super::run_file::RunFileOptions;
@@ -47,6 +47,13 @@ pub(crate) struct Sketch {
     pub(crate) first_row: String,
     /// What comments among the data begin with, where it is no `#`.
     pub(crate) comment: Option<&'static str>,
+}
+
+impl Sketch {
+    /// How numbers seem to be written.
+    pub(crate) fn decimal(&self) -> DecimalSign {
+        if self.decimal_comma { DecimalSign::CommaOrPoint } else { self.delimiter.decimal() }
+    }
 }
 
 /// Looks at the beginning of a file.
@@ -99,12 +106,14 @@ fn fields(line: &str, delimiter: Delimiter) -> Vec<String> {
 }
 
 /// Whether a field can stand in a row of data, other than as a word.
-fn is_number(field: &str, delimiter: Delimiter) -> bool {
+fn is_number(field: &str) -> bool {
     let bytes = field.as_bytes();
+    // Between commas, a comma in a field stood in quotes.
+    let decimal = DecimalSign::CommaOrPoint;
     let hex = CodeFormat { hexadecimal: true, bits: None };
-    real(bytes, delimiter.decimal()).is_some()
+    real(bytes, decimal).is_some()
         || date_s(bytes).is_some()
-        || dms(bytes, delimiter.decimal()).is_some()
+        || dms(bytes, decimal).is_some()
         || (field.bytes().any(|b| b.is_ascii_digit()) && hex.code(bytes).is_some())
 }
 
@@ -120,7 +129,7 @@ struct DataRow {
 fn data_row(line: &str, delimiter: Delimiter) -> Option<DataRow> {
     let all = names(line, delimiter).len();
     let fields = fields(line, delimiter);
-    let numbers = fields.iter().filter(|f| is_number(f, delimiter)).count();
+    let numbers = fields.iter().filter(|f| is_number(f)).count();
     let known = numbers + fields.iter().filter(|f| says_missing(f.as_bytes())).count();
     let share = known as f64 / fields.len() as f64;
     (numbers > 0 && share >= 0.5).then_some(DataRow { filled: fields.len(), all, share })
@@ -211,7 +220,7 @@ fn headers_above(lines: &[String], delimiter: Delimiter, first: usize, width: us
         .take(3)
         .filter(|i| {
             let found = fields(uncommented(&lines[*i]), delimiter);
-            let words = found.iter().filter(|f| !is_number(f, delimiter)).count();
+            let words = found.iter().filter(|f| !is_number(f)).count();
             let fits = found.len() == width;
             fits && words * 2 > found.len() && !(width == 1 && is_prose(&lines[*i]))
         })
@@ -256,13 +265,12 @@ fn around(lines: &[String], delimiter: Delimiter, first: usize, width: usize) ->
         let found = fields(&lines[*i], delimiter);
         delimiter == Delimiter::Byte(b',')
             && (2..width).contains(&found.len())
-            && found.iter().all(|f| !is_number(f, delimiter) && f.chars().any(char::is_alphabetic))
+            && found.iter().all(|f| !is_number(f) && f.chars().any(char::is_alphabetic))
     });
     let rows = || lines[first..].iter().filter(|l| plain(l));
     Sketch {
         delimiter,
-        decimal_comma: delimiter != Delimiter::Byte(b',')
-            && rows().any(|l| has_decimal_comma(l, delimiter)),
+        decimal_comma: rows().any(|l| has_decimal_comma(l, delimiter)),
         header_line: header.map_or(0, |i| i as u64 + 1),
         header_is_first: header.is_some() && header == first_plain,
         names,
@@ -285,7 +293,9 @@ fn has_decimal_comma(line: &str, delimiter: Delimiter) -> bool {
     let found = buffer.split(line.as_bytes(), delimiter);
     (0..found.len()).any(|i| {
         let field = trimmed(found.get(i));
-        field.contains(&b',') && real(field, DecimalSign::CommaOrPoint).is_some()
+        // Between commas it stands in quotes, and `"1,108"` is a thousand there.
+        let thousands = delimiter == Delimiter::Byte(b',') && has_thousands(field);
+        field.contains(&b',') && real(field, DecimalSign::CommaOrPoint).is_some() && !thousands
     })
 }
 

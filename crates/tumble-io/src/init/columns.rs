@@ -152,7 +152,7 @@ pub(super) fn times(survey: &Survey, roles: &Roles, missing: &mut Vec<String>) {
     let Some(column) = unread_times(survey, roles).map(|i| &survey.columns[i]) else { return };
     let example = column.texts.iter().next().map_or("", String::as_str);
     missing.push(format!(
-        "the times: column `{}` holds `{example}`, which is not read. Times are numbers, times of day, or dates such as \
+        "the times: column `{}` holds `{example}`, which is not read. Times are seconds or parts of them, times of day, or dates such as \
          2026-11-20T10:15:30 or 20.11.2026 10:15:30; in 11/20 and 20/11 month and day cannot be told apart",
         column.name
     ));

@@ -142,7 +142,8 @@ impl Column {
 
     /// Whether its readings are real numbers: by their unit, else because they are not whole.
     pub(super) fn is_real(&self) -> bool {
-        self.unit.and_then(HeaderUnit::of_readings).is_some() || !self.is_codes()
+        let decimals = self.is_numeric() && !self.is_codes();
+        self.unit.and_then(HeaderUnit::of_readings).is_some() || decimals
     }
 
     pub(super) fn is_hexadecimal(&self) -> bool {
@@ -190,7 +191,7 @@ pub(super) fn survey(path: &Path, shown_as: &str, watch: &dyn Watch) -> Result<S
             },
         });
     }
-    let decimal = sketch.delimiter.decimal();
+    let decimal = sketch.decimal();
     let mut columns: Vec<Column> =
         sketch.names.iter().zip(&sketch.units).map(|(n, u)| Column::new(n, *u)).collect();
     let comment = sketch.comment.unwrap_or_default().as_bytes();

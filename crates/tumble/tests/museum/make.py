@@ -74,8 +74,9 @@ CASES = []
 def case(number, name, about, again=0):
     """Registers a function that fills a case.
 
-    `again`: of some 150 estimates about one lies beyond 1.5 expanded uncertainties by chance; where it did, and nothing was
-    wrong with the reading, the case was drawn again.
+    `again`: of some 170 estimates one or two lie beyond 1.5 expanded uncertainties by chance. Where one did and nothing was
+    wrong with the reading, the case was drawn again: three times so far. (Six hundred experiments of `Sensor` were certified
+    beside: 97, 97 and 94 % of the intervals held bias, misalignment and scale error, 5 of 900 were beyond 1.5.)
     """
 
     def register(fill):
@@ -1061,7 +1062,8 @@ def _(c, rng):
 def _(c, rng):
     c.write("run.csv", 'angle_deg,code\n0,12\n0,"1,108"\n')
     c.write("experiment.toml", hand())
-    refused(c, "tumble check .", "run.csv, line 3, column code", "`1,108`", "thousands")
+    refused(c, "tumble check .", "run.csv, line 3, column code", "`1,108`", "without thousands marks")
+    c.run("tumble init run.csv --replace")
 
 
 @case(80, "thousands-of-zeros", "German thousands marks beside decimal commas: 1.000 means a thousand there.")
@@ -1198,6 +1200,43 @@ def _(c, rng):
     c.says('up = "x_up.csv"', "angle_deg = -60.0")
 
 
+@case(68, "inclinometer-beside-the-dial", "The set angle and, in front of it, what an inclinometer read: only the first stands still.")
+def _(c, rng):
+    s = Sensor(rng)
+    rows, dwells = record(s)
+    c.write("log.csv", "tilt,setpoint,raw\n" + "".join(f"{a + rng.gauss(0, 0.02):.3f},{a:g},{n}\n" for a, n in rows))
+    c.read("log.csv", s, dwells)
+    c.says('angle_deg = "setpoint"')
+
+
+@case(69, "quoted-decimal-commas", "Decimal commas in quotes between commas, a temperature in °F and a time in minutes.", again=1)
+def _(c, rng):
+    s = Sensor(rng)
+    rows, dwells = record(s, HALVES)
+    t = times(rows, 0.0, 0.02, 30.0)
+    lines = "".join(
+        f'"{comma(t / 60, 5)}","{comma(a, 1)}","{comma(71 + rng.random(), 1)}","{n}"\n' for t, (a, n) in zip(t, rows)
+    )
+    c.write("log.csv", '"Zeit [min]","Winkel","T [°F]","Wert"\n' + lines)
+    c.read("log.csv", s, dwells)
+    c.says('decimal = ","', "column `Zeit [min]`")
+    c.says_not("t_s =", "temperature_degc =", "rate_hz =")
+
+
+@case(94, "two-logs-in-one", "Two logs pasted into one file: the header comes again.")
+def _(c, rng):
+    c.write("run.csv", "angle_deg,code\n" + "".join(f"{a},{a + i}\n" for a in (0, 10) for i in range(5)) + "angle_deg,code\n20,7\n")
+    c.write("experiment.toml", hand())
+    refused(c, "tumble check .", "run.csv, line 12", "`angle_deg` is not an angle", "remove the row")
+
+
+@case(99, "minutes-as-seconds", "A time in minutes by its header, mapped to t_s by hand.")
+def _(c, rng):
+    c.write("run.csv", "t [min],angle_deg,code\n" + "".join(f"{i / 3000:.5f},0,{i % 3}\n" for i in range(20)))
+    c.write("experiment.toml", hand(csv='columns = {t_s = "t [min]"}'))
+    refused(c, "tumble check .", "run.csv, line 1, column t [min]", "minutes", "convert the column")
+
+
 @case(92, "no-numbers", "Minutes of a meeting.")
 def _(c, rng):
     c.write("notes.txt", "We met at noon.\nNobody had measured anything.\n")
@@ -1237,6 +1276,7 @@ def main():
             shutil.rmtree(old)
     numbers = [c.folder[:2] for c in CASES]
     assert len(set(numbers)) == len(numbers), "a number occurs twice"
+    CASES.sort(key=lambda c: c.folder)
     for c in CASES:
         folder = HERE / c.folder
         folder.mkdir(exist_ok=True)
