@@ -84,8 +84,8 @@ impl<'a> Fields<'a> {
 
 const DECIMAL_COMMA: &str = "write a decimal point, and no thousands marks; where all numbers have decimal commas, decimal = \",\" in [csv]";
 const THOUSANDS: &str = "write the number without thousands marks";
-const BOTH_MARKS: &str = "a column with decimal commas and with points: 1.000 may be one, or a thousand; write all its numbers with one \
-     decimal mark and without thousands marks";
+const BOTH_MARKS: &str = "where decimal commas stand in the same column, 1.000 may be one, or a thousand: write the whole \
+     column with one decimal mark, and without thousands marks";
 const MISSING: &str = "fill in the cell or remove the row; missing = \"skip\" in [csv] leaves rows without a reading out";
 
 /// What to do about a code that is none.
@@ -167,9 +167,12 @@ impl Row<'_> {
     pub(super) fn dial(&self, index: usize, dialect: &Dialect) -> Result<f64, ReadError> {
         let unit = dialect.angle_unit.unwrap_or_default();
         let text = self.text(index);
-        self.check_marks(index, unit.expected())?;
+        self.check_marks(index)?;
         unit.value(text, self.columns.decimal).ok_or_else(|| {
             let remedy = match text {
+                t if t == self.columns.name(index).as_bytes() => {
+                    "it is the header once more: remove the row"
+                }
                 [] => "fill in the empty cell (the angle stands in every row), or remove the row",
                 t if unit != AngleUnit::DegreesMinutesSeconds && dms(t, DecimalSign::CommaOrPoint).is_some() => {
                     "write angle_unit = \"dms\" in [bench] where these are degrees, minutes and seconds"
@@ -187,7 +190,7 @@ impl Row<'_> {
         let unit = dialect.time_unit.unwrap_or_default();
         let text = self.text(index);
         if unit != TimeUnit::Date {
-            self.check_marks(index, unit.expected())?;
+            self.check_marks(index)?;
         }
         unit.seconds(text, self.columns.decimal).ok_or_else(|| {
             let remedy = match text {
@@ -207,7 +210,7 @@ impl Row<'_> {
 
     pub(super) fn real(&self, index: usize, expected: &'static str) -> Result<f64, ReadError> {
         let text = self.text(index);
-        self.check_marks(index, expected)?;
+        self.check_marks(index)?;
         real(text, self.columns.decimal).ok_or_else(|| {
             let remedy = match text {
                 t if says_missing(t) => MISSING,
@@ -223,9 +226,10 @@ impl Row<'_> {
 
     /// Refuses a number whose decimal mark contradicts those of its column.
     #[inline]
-    fn check_marks(&self, index: usize, expected: &'static str) -> Result<(), ReadError> {
+    fn check_marks(&self, index: usize) -> Result<(), ReadError> {
         let both = self.columns.decimal == DecimalSign::CommaOrPoint
             && !self.columns.marks.agree(index, self.text(index));
+        let expected = "written like the rest of its column";
         if both { Err(self.wrong(index, expected, BOTH_MARKS)) } else { Ok(()) }
     }
 

@@ -172,10 +172,15 @@ pub(super) struct Survey {
 /// Surveys a file.
 pub(super) fn survey(path: &Path, shown_as: &str, watch: &dyn Watch) -> Result<Survey, ReadError> {
     let Some(sketch) = sketch_file(path, shown_as)? else {
+        let empty = std::fs::metadata(path).is_ok_and(|m| m.len() == 0);
         return Err(ReadError {
             place: Place::file(shown_as),
             problem: Problem::Empty {
-                what: "no rows of numbers were found; a record has a header and rows such as `angle_deg,code` and `-30,1108`",
+                what: if empty {
+                    "the file is empty; a record has a header and rows such as `angle_deg,code` and `-30,1108`"
+                } else {
+                    "no rows of numbers were found; a record has a header and rows such as `angle_deg,code` and `-30,1108`"
+                },
             },
         });
     };
