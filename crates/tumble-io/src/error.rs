@@ -117,6 +117,13 @@ pub enum Problem {
         /// The path.
         path: String,
     },
+    /// A file that experiment.toml names and that is not there.
+    NoFile {
+        /// The file.
+        path: String,
+        /// A file of the folder whose name is much like it.
+        nearest: Option<String>,
+    },
     /// A name that occurs twice or not at all.
     RunName {
         /// The name.
@@ -184,6 +191,10 @@ pub enum Problem {
         expected: usize,
         /// The separator's name.
         delimiter: &'static str,
+        /// The row.
+        text: String,
+        /// All its fields are numbers.
+        numbers: bool,
     },
     /// A field that is not what its column holds.
     Field {
@@ -223,14 +234,19 @@ pub enum Problem {
 impl Problem {
     /// A key that is not known, with the nearest known one.
     pub(crate) fn unknown_key(key: &str, known: Vec<String>) -> Self {
-        let nearest = known
-            .iter()
-            .map(|k| (strsim::jaro_winkler(&key.to_lowercase(), k), k))
-            .filter(|(similar, _)| *similar > 0.75)
-            .max_by(|a, b| a.0.total_cmp(&b.0))
-            .map(|(_, k)| k.clone());
+        let nearest = nearest(key, &known);
         Self::UnknownKey { key: key.to_owned(), nearest, known }
     }
+}
+
+/// The known name that is most like one that is not, if any is.
+pub(crate) fn nearest(name: &str, known: &[String]) -> Option<String> {
+    known
+        .iter()
+        .map(|k| (strsim::jaro_winkler(&name.to_lowercase(), &k.to_lowercase()), k))
+        .filter(|(similar, _)| *similar > 0.75)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, k)| k.clone())
 }
 
 impl fmt::Display for ReadError {
@@ -276,6 +292,13 @@ impl fmt::Display for Problem {
                 "`{}` leaves the experiment folder; copy the file into the folder and name it relative to experiment.toml",
                 visible(path)
             ),
+            Self::NoFile { path, nearest } => {
+                write!(f, "`{}` is not in the folder", visible(path))?;
+                match nearest {
+                    Some(n) => write!(f, "; did you mean `{}`?", visible(n)),
+                    None => f.write_str("; name a file that lies beside experiment.toml"),
+                }
+            }
             Self::RunName { name, known } => write!(
                 f,
                 "`{}` must name exactly one run; the runs are {}. A run is named after its file, or by `name`",
@@ -336,19 +359,26 @@ impl fmt::Display for Problem {
                     printable(remedy)
                 )
             }
-            Self::Fields { seen, expected, delimiter } => write!(
+            Self::Fields { seen, expected, delimiter, text, numbers } => write!(
                 f,
-                "{seen} fields where the header has {expected} (separated by {}); {}",
+                "`{}` has {} where the header has {expected} (separated by {}); {}",
+                visible(text),
+                if *seen == 1 { "1 field".to_owned() } else { format!("{seen} fields") },
                 match *delimiter {
                     "tab" | "blanks" => format!("{delimiter}s").replace("ss", "s"),
                     mark => format!("`{mark}`"),
                 },
-                if *delimiter == "," && seen > expected {
+                if *delimiter == "," && seen > expected && *numbers {
                     "decimal commas between commas cannot be told apart: export with `;`, or with decimal points"
+                } else if seen > expected {
+                    "mend or remove the row, or put rows of another kind into a file of their own"
                 } else {
-                    "mend or remove the row (a truncated last line is common)"
+                    "mend or remove the row, or begin it with `#` (a truncated last line is common)"
                 }
             ),
+            Self::Field { text, expected, remedy } if text.is_empty() => {
+                write!(f, "the cell is empty and should hold {expected}; {remedy}")
+            }
             Self::Field { text, expected, remedy } => {
                 write!(f, "`{}` is not {expected}; {remedy}", visible(text))
             }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 
 use crate::csv::Mapping;
-use crate::error::ReadError;
+use crate::error::{Problem, ReadError};
 use crate::toml_text;
 
 /// The whole file.
@@ -175,6 +175,55 @@ pub(crate) fn parse(text: &str, shown_as: &str) -> Result<ExperimentFile, ReadEr
     toml_text::from_toml(text, shown_as)
 }
 
+/// An error about experiment.toml with the line that it is about, where that can be found in the text.
+pub(crate) fn located(mut e: ReadError, text: &str, shown_as: &str) -> ReadError {
+    if e.place.file == shown_as && e.place.line.is_none() {
+        e.place.line = match &e.problem {
+            Problem::Value { key, .. } => line_of_key(text, key),
+            Problem::OutsideFolder { path } | Problem::NoFile { path, .. } => {
+                line_with(text, &format!("\"{path}\""))
+            }
+            Problem::RunName { name, .. } => line_with(text, &format!("\"{name}\"")),
+            Problem::UnknownKey { key, .. } => line_with(text, key),
+            _ => None,
+        };
+    }
+    e
+}
+
+/// The only line with a text, comments apart.
+fn line_with(text: &str, wanted: &str) -> Option<u64> {
+    let mut found = (1..)
+        .zip(text.lines())
+        .filter(|(_, line)| line.contains(wanted) && !line.trim_start().starts_with('#'));
+    let (number, _) = found.next()?;
+    found.next().is_none().then_some(number)
+}
+
+/// The only line that sets a key such as `[bench] gravity` in its table.
+fn line_of_key(text: &str, key: &str) -> Option<u64> {
+    let (table, name) = match key.rsplit_once(' ') {
+        Some((table, name)) => (Some(table.trim_matches(['[', ']'])), name),
+        None => (None, key),
+    };
+    let mut open = "";
+    let mut found = None;
+    for (number, line) in (1..).zip(text.lines().map(str::trim)) {
+        if let Some(rest) = line.strip_prefix('[') {
+            open = rest.trim_start_matches('[').split(']').next().unwrap_or_default().trim();
+            continue;
+        }
+        let sets = line.strip_prefix(name).is_some_and(|rest| rest.trim_start().starts_with('='));
+        if sets && table.is_none_or(|t| t == open) {
+            if found.is_some() {
+                return None;
+            }
+            found = Some(number);
+        }
+    }
+    found
+}
+
 /// A date of TOML or a text, as text.
 pub(crate) fn date_text(value: &toml::Value) -> String {
     match value {
@@ -194,6 +243,16 @@ mod tests {
         let error = parse(&format!("{HEAD}gravty = 9.81\n"), "experiment.toml").unwrap_err();
         let text = error.to_string();
         assert!(text.contains("line 6") && text.contains("`gravity`"), "{text}");
+    }
+
+    #[test]
+    fn impossible_values_name_their_line() {
+        let text = "[output]\nunit = \"V\"\n# gravity = 1\n[bench]\ngravity = 981\n[[run]]\nfile = \"../a\"\n";
+        assert_eq!(line_of_key(text, "[bench] gravity"), Some(5));
+        assert_eq!(line_of_key(text, "[output] gravity"), None);
+        assert_eq!(line_of_key(text, "unit"), Some(2));
+        assert_eq!(line_with(text, "\"../a\""), Some(7));
+        assert_eq!(line_with(text, "["), None);
     }
 
     #[test]

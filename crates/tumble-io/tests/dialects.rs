@@ -55,9 +55,17 @@ fn one_record_in_more_dresses() {
     let cases: Vec<(Toml, Vec<u8>)> = vec![
         (PLAIN, b"Angle_Deg,CODE\n-30.5,10\n-30.5,12\n30,-7\n".to_vec()),
         (PLAIN, b"sep=;\nangle_deg;code\n-30,5;10\n-30,5;12\n30;-7\n".to_vec()),
+        (
+            PLAIN,
+            b"angle_deg,code\n  # by hand\n-30.5,1.000e+01\n-30.5,1.2000e+01\n30,-7\n".to_vec(),
+        ),
+        (
+            Toml { bench: "angle_unit = \"dms\"", ..PLAIN },
+            b"angle_deg,code\n-30 30'00\",10\n\"-30 30'00\"\"\",12\n30 0'0\",-7\n".to_vec(),
+        ),
         (PLAIN, b"angle_deg|code\n-30.5|10\n-30.5|12\n30|-7\n".to_vec()),
         (PLAIN, b"angle_deg,code,\n-30.5,10,\n-30.5,12,,\n30,-7,\n".to_vec()),
-        (PLAIN, "angle_deg,code\n−30.5,10\n−30.5,12\n30,−7\n".replace("−7", "-7").into_bytes()),
+        (PLAIN, "angle_deg,code\n−30.5,10\n−30.5,12\n30,−7\n".as_bytes().to_vec()),
         (PLAIN, "angle_deg,code\n-30°30',10\n-30°30′,12\n30°,-7\n".as_bytes().to_vec()),
         (PLAIN, b"angle_deg,code\n-30\xb030',10\n-30\xb030',12\n30\xb0,-7\n".to_vec()),
         (
@@ -168,6 +176,17 @@ fn times_give_rates_gaps_and_steps_back() {
 }
 
 #[test]
+fn a_clock_that_is_set_back_throws_nothing_away() {
+    let mut csv = String::from("t_s,angle_deg,code\n");
+    for i in 0..40 {
+        let t = f64::from(i) * 0.02 + if i < 20 { 3600.0 } else { 0.0 };
+        csv.push_str(&format!("{t:.2},0,{}\n", i % 3));
+    }
+    let p = Toml { run: "discard_s = 0.09", ..PLAIN }.positions(&csv);
+    assert_eq!((p[0].readings.samples(), p[0].record.left_out), (35, [5, 0]));
+}
+
+#[test]
 fn settling_is_found_and_left_out() {
     let mut csv = String::from("angle_deg,code\n");
     for angle in [0, 10] {
@@ -206,6 +225,9 @@ fn a_continuous_record_is_cut_into_dwells() {
     assert!(p.iter().all(|d| d.readings.samples() > 200 && d.record.left_out[0] >= 40));
     assert!((p[0].record.timing.as_ref().unwrap().rate_hz().unwrap() - 50.0).abs() < 0.1);
     let toml = Toml { run: "angles_deg = [-30.0, 0.0]", ..PLAIN };
+    let turning: String = (0..400).map(|i| format!("{i},{}\n", i * 50)).collect();
+    let refused = toml.read(format!("t_s,code\n{turning}")).unwrap_err().to_string();
+    assert!(refused.contains("stand still nowhere"), "{refused}");
     let refused = toml.read(&csv).unwrap_err().to_string();
     for word in ["lists 2 angles", "stood still 4 times", "lines 2–", "nan"] {
         assert!(refused.contains(word), "{refused}");
@@ -264,6 +286,34 @@ fn misunderstandings_name_the_line_to_write() {
             Toml { csv: "columns = {angle = \"x\"}", ..PLAIN },
             b"x,code\n0,1\n",
             &["did you mean `angle_deg`"],
+        ),
+        (
+            Toml { csv: "columns = {angle_deg = \"Winkel [Grad]\"}", ..PLAIN },
+            b"Winkel [Grad],code\n0,1\n",
+            &["the header says Grad", "angle_unit = \"deg\" or \"gon\" in [bench]"],
+        ),
+        (
+            Toml { csv: "columns = {t_s = \"t [min]\"}", ..PLAIN },
+            b"t [min],angle_deg,code\n0,0,1\n",
+            &["minutes", "convert the column"],
+        ),
+        (
+            Toml { csv: "columns = {mean_code = \"mean [V]\"}", ..PLAIN },
+            b"angle_deg,mean [V],samples\n0,1.5,10\n",
+            &["the header says V", "quantizer = \"none\""],
+        ),
+        (
+            PLAIN,
+            b"t_s;angle_deg;code\n0,5;0;1\n1.000;0;1\n",
+            &["line 3, column t_s", "`1.000`", "thousand"],
+        ),
+        (PLAIN, b"angle_deg,code\n0,\"1,108\"\n", &["`1,108`", "without thousands marks"]),
+        (PLAIN, b"angle_deg,code\n0,1\nend of log\n", &["line 3", "`end of log` has 1 field"]),
+        (PLAIN, b"angle_deg,code\n0,1\nangle_deg,code\n", &["line 3", "header once more"]),
+        (
+            Toml { bench: "angle_sign = 2", ..PLAIN },
+            b"angle_deg,code\n0,1\n",
+            &["experiment.toml, line 7", "[bench] angle_sign = 2"],
         ),
         (
             Toml { csv: "columns = {code = 7}", ..PLAIN },

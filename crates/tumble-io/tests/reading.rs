@@ -110,7 +110,10 @@ fn what_is_not_understood_is_refused_with_its_place_and_a_remedy() {
     let cases: &[(&str, &[&str])] = &[
         ("", &["run.csv", "header line"]),
         ("angle_deg,code\n", &["no rows"]),
-        ("Angle,ADC\n0,1\n", &["line 1", "angle_deg", "columns = {angle_deg = \"Angle\"}"]),
+        (
+            "Angle,ADC\n0,1\n",
+            &["line 1", "angle_deg", "columns = {angle_deg = \"Angle\", code = \"ADC\"}"],
+        ),
         ("angle_deg,code,code\n0,1,2\n", &["`code` occurs twice"]),
         ("angle_deg,code\n0,1\n0,1.5\n", &["line 3", "column code", "`1.5`", "mean_code"]),
         ("angle_deg,code\n0,0x1f\n", &["line 2", "integer"]),

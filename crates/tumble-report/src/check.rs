@@ -77,7 +77,7 @@ fn table(out: &mut String, run: &CheckedRun, unit: &str) {
     }
     let _ = writeln!(
         out,
-        "  {:>3} {:>9} {:>7} {:>7} {:>5} {:>11} {:>8} {:>6} {:>9}  state",
+        "{:>3} {:>9} {:>7} {:>7} {:>4} {:>10} {:>8} {:>6} {:>8}  state",
         "#", "angle/deg", "samples", "rate/Hz", "gaps", "mean", "noise", "T/degC", "off line"
     );
     for (i, d) in run.dwells.iter().enumerate().take(LISTED) {
@@ -104,7 +104,7 @@ fn row(out: &mut String, number: usize, d: &CheckedDwell) {
         |v: Option<f64>, decimals: usize| v.map_or("-".to_owned(), |v| format!("{v:.decimals$}"));
     let _ = writeln!(
         out,
-        "  {number:>3} {:>9.4} {:>7} {:>7} {:>5} {:>11} {:>8} {:>6} {:>9}  {}",
+        "{number:>3} {:>9.4} {:>7} {:>7} {:>4} {:>10} {:>8} {:>6} {:>8}  {}",
         d.angle_deg,
         d.samples,
         or_dash(d.rate_hz, 4),

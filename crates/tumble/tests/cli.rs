@@ -388,9 +388,9 @@ fn errors_say_what_where_and_one_thing_to_do() {
         (
             "\"run-1.csv\"",
             "\"run1.csv\"",
-            "run1.csv: there is no such file; did you mean `run-1.csv`",
+            "`run1.csv` is not in the folder; did you mean `run-1.csv`",
         ),
-        ("\"run-1.csv\"", "\"photo.jpg\"", "photo.jpg: there is no such file; is the name right"),
+        ("\"run-1.csv\"", "\"photo.jpg\"", "`photo.jpg` is not in the folder; name a file"),
         ("gravity = 9.81", "gravity = 9,81", "write gravity = 9.81"),
         ("\"run-1.csv\"", "\"C:\\data\\run-1.csv\"", "write file = \"C:/data/run-1.csv\""),
         ("\"run-1.csv\"", "\"data\\run-1.csv\"", "/ between folders"),

@@ -53,6 +53,15 @@ pub(super) fn read<R: Read>(
     }
     let reals: Vec<f64> = kept.iter().map(|k| k.reading.real()).collect();
     let stretches = still_stretches(&reals);
+    if stretches.is_empty() {
+        return Err(ReadError {
+            place: Place::file(shown_as.as_str()),
+            problem: Problem::Empty {
+                what: "no angle stands beside the readings, and they stand still nowhere; name the column of angles in `columns`, \
+                       or leave the table still for some seconds at each angle",
+            },
+        });
+    }
     if stretches.len() != angles.len() {
         let found = stretches
             .iter()

@@ -78,7 +78,8 @@ pub(crate) fn dms(field: &[u8], decimal: DecimalSign) -> Option<f64> {
         Ok(text) => text.to_owned(),
         Err(_) => field.iter().map(|b| char::from(*b)).collect(),
     };
-    let text = latin.trim().replace('−', "-");
+    // Marks of seconds stand behind; quotes in front are those of the field.
+    let text = latin.trim().trim_start_matches('"').replace('−', "-");
     let (negative, rest) = match (text.strip_prefix('-'), text.strip_prefix('+')) {
         (Some(rest), _) => (true, rest),
         (None, Some(rest)) => (false, rest),
@@ -128,6 +129,7 @@ mod tests {
             assert_eq!(value(wrong), None, "{wrong}");
         }
         assert_eq!(dms(b"12\xb030", DecimalSign::Point), Some(12.5));
+        assert_eq!(value("\"-12°30'15\"\"\""), Some(-12.504_166_666_666_667));
     }
 
     #[test]

@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
+use tumble_core::Quantizer;
 
 use super::clock::TimeUnit;
 use super::dial::AngleUnit;
 use super::dialect::{Delimiter, Dialect};
-use super::number::{DecimalSign, real, trimmed};
+use super::number::{DecimalSign, Marks, real, trimmed};
 use super::roles::{HeaderUnit, role, role_of_known, split_unit};
 use super::row::FieldBuffer;
 use crate::error::{Place, Problem, ReadError};
@@ -56,6 +57,8 @@ pub(crate) struct Columns {
     index: BTreeMap<&'static str, usize>,
     /// Columns that are not used.
     pub(crate) ignored: Vec<String>,
+    /// Decimal marks that were seen.
+    pub(super) marks: Marks,
 }
 
 /// A header's text: UTF-8, else as Windows writes it. Only names are in it, and they are matched as they come.
@@ -174,7 +177,8 @@ impl Columns {
             .filter(|(i, n)| !used.contains(i) && !n.is_empty())
             .map(|(_, n)| n.clone())
             .collect();
-        Ok(Self { delimiter, decimal, names, index, ignored })
+        let marks = Marks::new(names.len());
+        Ok(Self { delimiter, decimal, names, index, ignored, marks })
     }
 
     /// Index of a known column.
@@ -199,29 +203,49 @@ impl Columns {
 
     /// Index of a column that must be there.
     pub(crate) fn require(&self, known: &'static str, place: &Place) -> Result<usize, ReadError> {
-        self.get(known).ok_or_else(|| self.missing(known, place))
+        self.get(known).ok_or_else(|| self.missing(&[known], place))
     }
 
-    /// The error for a column that must be there, with the likeliest header as a proposal.
-    pub(crate) fn missing(&self, known: &'static str, place: &Place) -> ReadError {
-        let wanted = role_of_known(known);
-        let similar = |n: &String| strsim::jaro_winkler(&n.to_lowercase(), known);
-        let own = self
-            .ignored
+    /// Refuses a file in which one of these columns is missing; all that are missing are named at once.
+    pub(crate) fn require_all(
+        &self,
+        wanted: &[&'static str],
+        place: &Place,
+    ) -> Result<(), ReadError> {
+        let missing: Vec<&str> =
+            wanted.iter().copied().filter(|known| self.get(known).is_none()).collect();
+        if missing.is_empty() { Ok(()) } else { Err(self.missing(&missing, place)) }
+    }
+
+    /// The error for columns that must be there, with the likeliest headers as a proposal.
+    fn missing(&self, known: &[&str], place: &Place) -> ReadError {
+        let mapped: Vec<String> = known
             .iter()
-            .find(|n| wanted.is_some() && role(n) == wanted)
-            .or_else(|| self.ignored.iter().max_by(|a, b| similar(a).total_cmp(&similar(b))))
-            .map_or("Your Header", String::as_str);
+            .map(|k| format!("{k} = \"{}\"", self.likeliest(k).unwrap_or("Your Header")))
+            .collect();
+        let named: Vec<String> = known.iter().map(|k| format!("no column `{k}`")).collect();
         ReadError {
             place: place.clone(),
             problem: Problem::Columns {
                 seen: self.names.clone(),
-                what: format!("no column `{known}`"),
+                what: named.join(", "),
                 remedy: format!(
-                    "if another column holds it, write columns = {{{known} = \"{own}\"}} in its [[run]]"
+                    "if other columns hold that, write columns = {{{}}} in [csv], or in its [[run]]",
+                    mapped.join(", ")
                 ),
             },
         }
+    }
+
+    /// The column that is likeliest to hold what a known one would.
+    fn likeliest(&self, known: &str) -> Option<&str> {
+        let wanted = role_of_known(known);
+        let similar = |n: &&String| strsim::jaro_winkler(&n.to_lowercase(), known);
+        let free = || self.ignored.iter().filter(|n| role(n).is_none() || role(n) == wanted);
+        free()
+            .find(|n| wanted.is_some() && role(n) == wanted)
+            .or_else(|| free().max_by(|a, b| similar(a).total_cmp(&similar(b))))
+            .map(String::as_str)
     }
 
     /// Name of a column as the header gives it.
@@ -234,12 +258,12 @@ impl Columns {
         &self,
         place: &Place,
         dialect: &Dialect,
-        unit: &str,
+        output: (Quantizer, &str),
     ) -> Result<(), ReadError> {
         for (known, index) in &self.index {
             let name = self.name(*index);
             let Some(seen) = split_unit(name).1 else { continue };
-            let Some(remedy) = contradiction(known, name, seen, dialect, unit) else { continue };
+            let Some(remedy) = contradiction(known, name, seen, dialect, output) else { continue };
             return Err(ReadError {
                 place: Place { column: Some(name.to_owned()), ..place.clone() },
                 problem: Problem::HeaderUnit { unit: seen.text(), remedy },
@@ -259,7 +283,7 @@ fn contradiction(
     header: &str,
     seen: HeaderUnit,
     dialect: &Dialect,
-    unit: &str,
+    (quantizer, unit): (Quantizer, &str),
 ) -> Option<String> {
     use HeaderUnit as U;
     let angle = |u: AngleUnit| {
@@ -273,15 +297,28 @@ fn contradiction(
     match (known, seen) {
         ("angle_deg", U::Gon) => angle(AngleUnit::Gon),
         ("angle_deg", U::Radians) => angle(AngleUnit::Radians),
+        ("angle_deg", U::Grad) => dialect.angle_unit.is_none().then(|| {
+            "Grad are degrees in German and gon elsewhere: write angle_unit = \"deg\" or \"gon\" in [bench]".into()
+        }),
         ("t_s", U::Milliseconds) => time(TimeUnit::Milliseconds),
         ("t_s", U::Microseconds) => time(TimeUnit::Microseconds),
         ("t_s", U::Nanoseconds) => time(TimeUnit::Nanoseconds),
+        ("t_s", U::LongTime) => Some(
+            "times are read in s, ms, us and ns, or as dates: convert the column, or leave it out of `columns`".into(),
+        ),
         ("code", u) => u.of_readings().map(|of| {
             format!(
                 "codes are in LSB: write quantizer = \"none\" and unit = \"{of}\" in [output], and columns = {{output = \"{header}\"}}"
             )
         }),
-        ("output", u) => u.of_readings().filter(|of| !same_unit(of, unit)).map(|of| {
+        ("mean_code" | "std_code", u) if quantizer != Quantizer::None => {
+            u.of_readings().map(|of| {
+                format!(
+                    "codes are in LSB: write quantizer = \"none\" and unit = \"{of}\" in [output], with nominal_scale in m/s² per {of}"
+                )
+            })
+        }
+        ("output" | "mean_code" | "std_code", u) => u.of_readings().filter(|of| !same_unit(of, unit)).map(|of| {
             format!("[output] says unit = \"{unit}\": write unit = \"{of}\", with nominal_scale in m/s² per {of}")
         }),
         ("temperature_degc", U::Fahrenheit | U::Kelvin) => {

@@ -74,19 +74,22 @@ impl<R: Read> Lines<R> {
         loop {
             let Some((from, to)) = self.advance()? else { return Ok(None) };
             // Nearly every line begins with a digit or a sign: one look decides.
-            let data = match self.buffer[from..to].first() {
+            let line = &self.buffer[from..to];
+            let data = match line.first() {
                 Some(b'#') | None => false,
-                Some(b) if b.is_ascii_whitespace() => {
-                    self.buffer[from..to].iter().any(|b| !b.is_ascii_whitespace())
-                }
-                Some(_) => {
-                    self.comment.is_empty() || !self.buffer[from..to].starts_with(&self.comment)
-                }
+                Some(b) if b.is_ascii_whitespace() => self.is_data(line.trim_ascii_start()),
+                Some(_) => self.comment.is_empty() || self.is_data(line),
             };
             if data {
                 return Ok(Some((self.number, &self.buffer[from..to])));
             }
         }
+    }
+
+    /// Whether a line that begins without blanks is neither empty nor a comment.
+    fn is_data(&self, line: &[u8]) -> bool {
+        let own = !self.comment.is_empty() && line.starts_with(&self.comment);
+        !(line.is_empty() || line[0] == b'#' || own)
     }
 
     /// The line that was read last will be read again.
@@ -185,11 +188,14 @@ mod tests {
 
     #[test]
     fn ends_marks_comments_and_blank_lines() {
-        let text = b"\xef\xbb\xbfa,b\r\n# note\r\n\r\n1,2\n   \n3,4";
+        let text = b"\xef\xbb\xbfa,b\r\n# note\r\n\r\n1,2\n  # moved\n3,4";
         let expected = vec![(1, "a,b".into()), (4, "1,2".into()), (6, "3,4".into())];
         assert_eq!(all(&text[..]), expected);
         assert_eq!(all(Drip(text)), expected);
         assert!(all(&b""[..]).is_empty());
+        let mut marked = Lines::new(&b"% a\n 1\n  % b\n"[..], "x").with_comment(b"%");
+        assert_eq!(marked.next_data().unwrap(), Some((2, &b" 1"[..])));
+        assert!(marked.next_data().unwrap().is_none());
     }
 
     #[test]

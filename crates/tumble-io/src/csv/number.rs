@@ -1,5 +1,7 @@
 //! Numbers in fields: exact, and never half understood.
 
+use std::cell::Cell;
+
 /// How numbers are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum DecimalSign {
@@ -28,7 +30,12 @@ impl CodeFormat {
     /// A code as it is written.
     pub(crate) fn code(self, field: &[u8]) -> Option<i32> {
         let field = trimmed(field);
-        let value = if self.hexadecimal { hexadecimal(field)? } else { wide(field)? };
+        let value = if self.hexadecimal {
+            hexadecimal(field)?
+        } else {
+            wide(field)
+                .or_else(|| self.bits.is_none().then(|| written_otherwise(field)).flatten())?
+        };
         let signed = match self.bits {
             None => value,
             Some(bits) => {
@@ -40,6 +47,65 @@ impl CodeFormat {
             }
         };
         i32::try_from(signed).ok()
+    }
+}
+
+/// A code with a typeset minus sign, or as scripts write whole numbers: `-1.108000000000000000e+03`. All its digits must
+/// be there: `1.23E+05` is what a spreadsheet shows of 123456. Without a point, `1e3` is hexadecimal as likely.
+fn written_otherwise(field: &[u8]) -> Option<i64> {
+    if let Some(rest) = field.strip_prefix("−".as_bytes()) {
+        let digit = rest.first().is_some_and(u8::is_ascii_digit);
+        return integer(rest).filter(|_| digit).map(|n| -i64::from(n));
+    }
+    let at = field.iter().position(|b| matches!(b, b'e' | b'E'))?;
+    let (mantissa, exponent) = (&field[..at], std::str::from_utf8(&field[at + 1..]).ok()?);
+    let point = mantissa.iter().position(|b| matches!(b, b'.' | b','))?;
+    let decimals = i64::try_from(mantissa.len() - point - 1).ok()?;
+    let exponent: i64 = exponent.parse().ok()?;
+    let value = real(field, DecimalSign::CommaOrPoint)?;
+    let code = value.fract() == 0.0 && value.abs() <= 4_294_967_295.0 && decimals >= exponent;
+    code.then_some(value as i64)
+}
+
+/// Whether a text is a number in groups of three digits: `1,108`, `1.108.000`, `1'108`.
+pub(crate) fn has_thousands(field: &[u8]) -> bool {
+    let Ok(text) = std::str::from_utf8(field) else { return false };
+    let digits = text.trim_start_matches(['-', '+', '−']);
+    let groups: Vec<&str> =
+        digits.split([',', '.', '\'', '’', ' ', '\u{a0}', '\u{202f}']).collect();
+    let all_digits = |g: &&str| g.bytes().all(|b| b.is_ascii_digit());
+    groups.len() > 1
+        && (1..=3).contains(&groups[0].len())
+        && groups.iter().all(all_digits)
+        && groups[1..].iter().all(|g| g.len() == 3)
+}
+
+/// What columns show of their decimal marks. Beside `;` both commas and points occur, but in a column with decimal commas
+/// `1.000` is a thousand as likely as one.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Marks(Vec<Cell<u8>>);
+
+impl Marks {
+    const COMMA: u8 = 1;
+    const THREE_AFTER_POINT: u8 = 2;
+
+    pub(crate) fn new(columns: usize) -> Self {
+        Self(vec![Cell::new(0); columns])
+    }
+
+    /// Notes a field; `false` where its column now holds both marks.
+    #[inline]
+    pub(crate) fn agree(&self, column: usize, field: &[u8]) -> bool {
+        let Some(seen) = self.0.get(column) else { return true };
+        let new = match field.iter().position(|b| matches!(b, b',' | b'.')) {
+            Some(at) if field[at] == b',' => Self::COMMA,
+            Some(at) if at <= 4 && field.len() == at + 4 && has_thousands(field) => {
+                Self::THREE_AFTER_POINT
+            }
+            _ => return true,
+        };
+        seen.set(seen.get() | new);
+        seen.get() != Self::COMMA | Self::THREE_AFTER_POINT
     }
 }
 
@@ -199,6 +265,31 @@ mod tests {
         let long = CodeFormat { hexadecimal: false, bits: Some(32) };
         assert_eq!(long.code(b"4294967295"), Some(-1));
         assert_eq!(CodeFormat { hexadecimal: true, bits: None }.code(b"-1F"), None);
+    }
+
+    #[test]
+    fn codes_as_scripts_and_documents_write_them() {
+        let code = |t: &str| CodeFormat::default().code(t.as_bytes());
+        assert_eq!(code("-3.495000000000000000e+03"), Some(-3495));
+        assert_eq!(code("0.000000000000000000e+00"), Some(0));
+        assert_eq!(code("−12"), Some(-12));
+        for wrong in ["1.23E+05", "1e3", "1.5e+00", "−−1", "−-1", "1.0e+99", "1.0e"] {
+            assert_eq!(code(wrong), None, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn marks_of_thousands() {
+        for text in ["1,108", "-1.108", "1'108", "1 108", "12.345.678"] {
+            assert!(has_thousands(text.as_bytes()), "{text}");
+        }
+        for text in ["1108", "1.05", "1,1080", ",108", "1234,567", "a,108"] {
+            assert!(!has_thousands(text.as_bytes()), "{text}");
+        }
+        let marks = Marks::new(2);
+        assert!(marks.agree(0, b"998,5") && marks.agree(0, b"12.5") && marks.agree(1, b"1.000"));
+        assert!(!marks.agree(0, b"1.000"));
+        assert!(!marks.agree(1, b"0,5"));
     }
 
     #[test]

@@ -79,6 +79,8 @@ impl Indices {
         for (column, text) in options.rows {
             filters.push((columns.find(column, header)?, text.as_bytes().to_vec()));
         }
+        let wanted = [(!without_angle).then_some("angle_deg"), Some(reading)];
+        columns.require_all(&wanted.into_iter().flatten().collect::<Vec<_>>(), header)?;
         let found = Self {
             angle: if without_angle { None } else { Some(columns.require("angle_deg", header)?) },
             reading: columns.require(reading, header)?,
@@ -156,6 +158,8 @@ pub(super) struct Gathered {
     /// Readings in time order, while the settled stretch is still to be found.
     kept: Option<Vec<Value>>,
     last: Option<i32>,
+    /// The start that is thrown away has passed. A clock that is set back later does not bring it back.
+    started: bool,
 }
 
 /// Reads all dwells of a raw file.
@@ -275,6 +279,7 @@ impl Gathered {
             readings,
             kept: (options.discard == Discard::Detected).then(Vec::new),
             last: None,
+            started: false,
         }
     }
 
@@ -300,6 +305,7 @@ impl Gathered {
         };
         if let Discard::Seconds(limit) = options.discard
             && limit > 0.0
+            && !self.started
         {
             let start = self.record.timing.as_ref().and_then(|t| t.first_s);
             let elapsed = match (sample.time_s.zip(start), options.rate_hz) {
@@ -311,6 +317,7 @@ impl Gathered {
                 self.record.left_out[0] += 1;
                 return Ok(());
             }
+            self.started = true;
         }
         if let Some(kept) = &mut self.kept {
             if kept.len() >= KEPT_LIMIT {

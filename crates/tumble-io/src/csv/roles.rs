@@ -7,11 +7,15 @@
 pub(crate) enum HeaderUnit {
     Degrees,
     Gon,
+    /// Degrees in German, gon elsewhere.
+    Grad,
     Radians,
     Seconds,
     Milliseconds,
     Microseconds,
     Nanoseconds,
+    /// Minutes or hours.
+    LongTime,
     Volts,
     Millivolts,
     StandardGravity,
@@ -47,7 +51,8 @@ impl HeaderUnit {
             .collect();
         Some(match plain.as_str() {
             "°" | "deg" | "degree" | "degrees" | "grad°" | "º" => Self::Degrees,
-            "gon" | "grad" | "gradian" | "gradians" => Self::Gon,
+            "gon" | "gradian" | "gradians" => Self::Gon,
+            "grad" => Self::Grad,
             "rad" | "radian" | "radians" => Self::Radians,
             "s" | "sec" | "secs" | "second" | "seconds" | "с" => Self::Seconds,
             "ms" | "msec" | "millis" | "milliseconds" | "мс" => Self::Milliseconds,
@@ -75,11 +80,13 @@ impl HeaderUnit {
         match self {
             Self::Degrees => "degrees",
             Self::Gon => "gon",
+            Self::Grad => "Grad",
             Self::Radians => "radians",
             Self::Seconds => "s",
             Self::Milliseconds => "ms",
             Self::Microseconds => "µs",
             Self::Nanoseconds => "ns",
+            Self::LongTime => "minutes or hours",
             Self::Volts => "V",
             Self::Millivolts => "mV",
             Self::StandardGravity => "g",
@@ -110,7 +117,10 @@ pub(crate) fn split_unit(header: &str) -> (&str, Option<HeaderUnit>) {
     let header = header.trim();
     for (open, close) in [('[', ']'), ('(', ')'), ('<', '>'), ('{', '}')] {
         if let Some((name, rest)) = header.split_once(open) {
-            let unit = HeaderUnit::named(rest.trim_end().trim_end_matches(close));
+            let text = rest.trim_end().trim_end_matches(close);
+            // `x_min` is a minimum, `t [min]` is not.
+            let long = matches!(text.trim(), "min" | "minutes" | "h" | "hours" | "hr");
+            let unit = HeaderUnit::named(text).or(long.then_some(HeaderUnit::LongTime));
             if unit.is_some() {
                 return (name.trim(), unit);
             }
@@ -304,24 +314,26 @@ pub(crate) fn role(header: &str) -> Option<Role> {
     let by_word = || WORDS.iter().find(|(_, known)| words.iter().any(|w| known.contains(w)));
     let by_name = whole.or_else(by_word).map(|(role, _)| *role);
     match (by_name, unit) {
-        // `T [°C]` is no time.
+        // `T [°C]` is no time, and `X_Value (s)` no reading: names of readings are words for anything.
         (
-            Some(Role::Time) | None,
+            Some(Role::Time | Role::Reading) | None,
             Some(HeaderUnit::Celsius | HeaderUnit::Fahrenheit | HeaderUnit::Kelvin),
         ) => Some(Role::Temperature),
-        (Some(role), _) => Some(role),
-        (None, Some(HeaderUnit::Degrees | HeaderUnit::Gon | HeaderUnit::Radians)) => {
-            Some(Role::Angle)
-        }
         (
-            None,
+            Some(Role::Reading) | None,
+            Some(HeaderUnit::Degrees | HeaderUnit::Gon | HeaderUnit::Grad | HeaderUnit::Radians),
+        ) => Some(Role::Angle),
+        (
+            Some(Role::Reading) | None,
             Some(
                 HeaderUnit::Seconds
                 | HeaderUnit::Milliseconds
                 | HeaderUnit::Microseconds
-                | HeaderUnit::Nanoseconds,
+                | HeaderUnit::Nanoseconds
+                | HeaderUnit::LongTime,
             ),
         ) => Some(Role::Time),
+        (Some(role), _) => Some(role),
         (None, Some(_)) => Some(Role::Reading),
         (None, None) => None,
     }
@@ -358,6 +370,9 @@ mod tests {
             ("Temp. [°C]", "Temp.", Some(U::Celsius)),
             ("T in °F", "T", Some(U::Fahrenheit)),
             ("angle_gon", "angle", Some(U::Gon)),
+            ("Zeit [min]", "Zeit", Some(U::LongTime)),
+            ("acc_min", "acc_min", None),
+            ("Winkel [Grad]", "Winkel", Some(U::Grad)),
             ("acc_x", "acc_x", None),
             ("code", "code", None),
             ("ADC", "ADC", Some(U::Lsb)),
@@ -376,6 +391,8 @@ mod tests {
             ("Table angle", Some(Role::Angle)),
             ("time (ms)", Some(Role::Time)),
             ("T [°C]", Some(Role::Temperature)),
+            ("X_Value (s)", Some(Role::Time)),
+            ("Wert [Grad]", Some(Role::Angle)),
             ("Temp_degC", Some(Role::Temperature)),
             ("acc_x", Some(Role::Reading)),
             ("ADC raw", Some(Role::Reading)),

@@ -3,8 +3,8 @@
 use super::clock::{TimeUnit, date_s};
 use super::dial::{AngleUnit, dms};
 use super::dialect::{Delimiter, Dialect};
-use super::header::Columns;
-use super::number::{CodeFormat, DecimalSign, integer, real, says_missing, trimmed};
+use super::header::{Columns, decoded};
+use super::number::{CodeFormat, DecimalSign, has_thousands, integer, real, says_missing, trimmed};
 use crate::error::{Place, Problem, ReadError};
 
 /// The places of a line's fields, kept from line to line so that nothing is allocated in the loop.
@@ -20,7 +20,7 @@ pub(crate) struct Fields<'a> {
 }
 
 impl FieldBuffer {
-    /// Splits a line; a field in quotes may hold the delimiter.
+    /// Splits a line; a field in quotes may hold the delimiter. A quote within a field is a mark of seconds, or of nothing.
     #[inline]
     pub(crate) fn split<'a>(&'a mut self, line: &'a [u8], delimiter: Delimiter) -> Fields<'a> {
         self.ends.clear();
@@ -43,7 +43,9 @@ impl FieldBuffer {
                 self.ends.push((start, i));
                 start = i + 1;
             } else if *b == b'"' {
-                quoted = !quoted;
+                let before = &line[start..i];
+                let opens = before.ends_with(b"\"") || before.trim_ascii().is_empty();
+                quoted = !quoted && opens;
             }
         }
         self.ends.push((start, line.len()));
@@ -81,6 +83,9 @@ impl<'a> Fields<'a> {
 }
 
 const DECIMAL_COMMA: &str = "write a decimal point, and no thousands marks; where all numbers have decimal commas, decimal = \",\" in [csv]";
+const THOUSANDS: &str = "write the number without thousands marks";
+const BOTH_MARKS: &str = "where decimal commas stand in the same column, 1.000 may be one, or a thousand: write the whole \
+     column with one decimal mark, and without thousands marks";
 const MISSING: &str = "fill in the cell or remove the row; missing = \"skip\" in [csv] leaves rows without a reading out";
 
 /// What to do about a code that is none.
@@ -90,6 +95,9 @@ fn code_remedy(text: &[u8], format: CodeFormat) -> &'static str {
         t if says_missing(t) => MISSING,
         t if format.bits.is_some() && format.code(t).is_none() && integer(t).is_some() => {
             "correct code_bits in [csv], or remove it where codes carry their sign"
+        }
+        t if has_thousands(t) => {
+            "codes are whole LSB without thousands marks; volts, g or m/s² go into a column `output` with quantizer = \"none\""
         }
         t if !format.hexadecimal && hex.code(t).is_some() => {
             "write code_format = \"hex\" in [csv], and code_bits = 16 where the words are 16 bits with a sign"
@@ -126,7 +134,13 @@ impl Row<'_> {
         }
         Err(ReadError {
             place: self.place(),
-            problem: Problem::Fields { seen, expected, delimiter: self.columns.delimiter.name() },
+            problem: Problem::Fields {
+                seen,
+                expected,
+                delimiter: self.columns.delimiter.name(),
+                text: decoded(self.fields.line),
+                numbers: (0..seen).all(|i| real(self.text(i), DecimalSign::Point).is_some()),
+            },
         })
     }
 
@@ -140,25 +154,25 @@ impl Row<'_> {
     pub(super) fn code(&self, index: usize, format: CodeFormat) -> Result<i32, ReadError> {
         let field = self.fields.get(index);
         let plain = if format.is_plain() { integer(field) } else { None };
-        plain
-            .or_else(
-                || if format.is_plain() { integer(trimmed(field)) } else { format.code(field) },
-            )
-            .ok_or_else(|| {
-                let expected = match format.bits {
-                    Some(_) => "a code of so many bits as code_bits says, without a sign",
-                    None => "an integer code",
-                };
-                self.wrong(index, expected, code_remedy(trimmed(field), format))
-            })
+        plain.or_else(|| format.code(field)).ok_or_else(|| {
+            let expected = match format.bits {
+                Some(_) => "a code of so many bits as code_bits says, without a sign",
+                None => "an integer code",
+            };
+            self.wrong(index, expected, code_remedy(trimmed(field), format))
+        })
     }
 
     /// A reading of the dial, in the dial's own unit.
     pub(super) fn dial(&self, index: usize, dialect: &Dialect) -> Result<f64, ReadError> {
         let unit = dialect.angle_unit.unwrap_or_default();
         let text = self.text(index);
+        self.check_marks(index)?;
         unit.value(text, self.columns.decimal).ok_or_else(|| {
             let remedy = match text {
+                t if t == self.columns.name(index).as_bytes() => {
+                    "it is the header once more: remove the row"
+                }
                 [] => "fill in the empty cell (the angle stands in every row), or remove the row",
                 t if unit != AngleUnit::DegreesMinutesSeconds && dms(t, DecimalSign::CommaOrPoint).is_some() => {
                     "write angle_unit = \"dms\" in [bench] where these are degrees, minutes and seconds"
@@ -175,6 +189,9 @@ impl Row<'_> {
     pub(super) fn time_s(&self, index: usize, dialect: &Dialect) -> Result<f64, ReadError> {
         let unit = dialect.time_unit.unwrap_or_default();
         let text = self.text(index);
+        if unit != TimeUnit::Date {
+            self.check_marks(index)?;
+        }
         unit.seconds(text, self.columns.decimal).ok_or_else(|| {
             let remedy = match text {
                 [] => "fill in the empty cell, remove the row, or leave the time out of `columns`",
@@ -193,14 +210,27 @@ impl Row<'_> {
 
     pub(super) fn real(&self, index: usize, expected: &'static str) -> Result<f64, ReadError> {
         let text = self.text(index);
+        self.check_marks(index)?;
         real(text, self.columns.decimal).ok_or_else(|| {
             let remedy = match text {
                 t if says_missing(t) => MISSING,
+                t if has_thousands(t) && self.columns.decimal == DecimalSign::CommaOrPoint => {
+                    THOUSANDS
+                }
                 t if t.contains(&b',') => DECIMAL_COMMA,
                 _ => "mend or remove the row",
             };
             self.wrong(index, expected, remedy)
         })
+    }
+
+    /// Refuses a number whose decimal mark contradicts those of its column.
+    #[inline]
+    fn check_marks(&self, index: usize) -> Result<(), ReadError> {
+        let both = self.columns.decimal == DecimalSign::CommaOrPoint
+            && !self.columns.marks.agree(index, self.text(index));
+        let expected = "written like the rest of its column";
+        if both { Err(self.wrong(index, expected, BOTH_MARKS)) } else { Ok(()) }
     }
 
     pub(super) fn wrong(
@@ -212,7 +242,7 @@ impl Row<'_> {
         ReadError {
             place: Place::field(self.file, self.line, self.columns.name(index)),
             problem: Problem::Field {
-                text: String::from_utf8_lossy(self.fields.get(index)).into_owned(),
+                text: String::from_utf8_lossy(self.text(index)).into_owned(),
                 expected,
                 remedy,
             },

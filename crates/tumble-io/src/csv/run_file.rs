@@ -103,7 +103,7 @@ fn read_lines<R: std::io::Read>(
     options: &RunFileOptions<'_>,
 ) -> Result<(Vec<Dwell>, Vec<String>), ReadError> {
     let (place, columns) = header(lines, options)?;
-    columns.check_units(&place, options.dialect, options.unit)?;
+    columns.check_units(&place, options.dialect, (options.quantizer, options.unit))?;
     let has_angle = columns.get("angle_deg").is_some();
     if has_angle && (options.fixed_angle_deg.is_some() || options.angles_deg.is_some()) {
         let remedy = match options.angles_deg {
@@ -134,7 +134,9 @@ fn read_lines<R: std::io::Read>(
         };
         return Err(ReadError { place, problem: Problem::Empty { what } });
     }
-    Ok((dwells, columns.ignored))
+    // A column that rows are chosen by is used.
+    let ignored = columns.ignored.into_iter().filter(|c| !options.rows.contains_key(c)).collect();
+    Ok((dwells, ignored))
 }
 
 /// Reads the header, and goes on to the first line of data.

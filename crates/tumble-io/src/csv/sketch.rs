@@ -9,7 +9,7 @@ use super::clock::date_s;
 use super::dial::dms;
 use super::dialect::Delimiter;
 use super::header::{decoded, names};
-use super::number::{CodeFormat, DecimalSign, real, says_missing, trimmed};
+use super::number::{CodeFormat, DecimalSign, has_thousands, real, says_missing, trimmed};
 use super::roles::{HeaderUnit, role, split_unit};
 use super::row::FieldBuffer;
 use super::run_file::RunFileOptions;
@@ -41,8 +41,19 @@ pub(crate) struct Sketch {
     pub(crate) data_line: u64,
     /// Data follow at once upon the header.
     pub(crate) data_is_next: bool,
+    /// Names in the line above the data, where they are fewer than the numbers of each row.
+    pub(crate) narrow_header: Option<usize>,
+    /// The first row of data.
+    pub(crate) first_row: String,
     /// What comments among the data begin with, where it is no `#`.
     pub(crate) comment: Option<&'static str>,
+}
+
+impl Sketch {
+    /// How numbers seem to be written.
+    pub(crate) fn decimal(&self) -> DecimalSign {
+        if self.decimal_comma { DecimalSign::CommaOrPoint } else { self.delimiter.decimal() }
+    }
 }
 
 /// Looks at the beginning of a file.
@@ -95,72 +106,132 @@ fn fields(line: &str, delimiter: Delimiter) -> Vec<String> {
 }
 
 /// Whether a field can stand in a row of data, other than as a word.
-fn is_number(field: &str, delimiter: Delimiter) -> bool {
+fn is_number(field: &str) -> bool {
     let bytes = field.as_bytes();
+    // Between commas, a comma in a field stood in quotes.
+    let decimal = DecimalSign::CommaOrPoint;
     let hex = CodeFormat { hexadecimal: true, bits: None };
-    real(bytes, delimiter.decimal()).is_some()
+    real(bytes, decimal).is_some()
         || date_s(bytes).is_some()
-        || dms(bytes, delimiter.decimal()).is_some()
+        || dms(bytes, decimal).is_some()
         || (field.bytes().any(|b| b.is_ascii_digit()) && hex.code(bytes).is_some())
 }
 
-/// The share of a row's fields that are numbers, where the row can be data at all.
-fn numeric_share(line: &str, delimiter: Delimiter) -> Option<(usize, f64)> {
-    let fields = fields(line, delimiter);
-    let numbers = fields.iter().filter(|f| is_number(f, delimiter)).count();
-    let known = numbers + fields.iter().filter(|f| says_missing(f.as_bytes())).count();
-    let share = known as f64 / fields.len() as f64;
-    (numbers > 0 && share >= 0.5).then_some((fields.len(), share))
+/// A row that can be data.
+struct DataRow {
+    /// Fields up to the last one that holds something, and all of them: empty ones at the end may be cells, or nothing.
+    filled: usize,
+    all: usize,
+    /// The share of the fields that are numbers.
+    share: f64,
 }
 
-/// The longest block of rows of one width: its score, first line (from zero) and width.
+fn data_row(line: &str, delimiter: Delimiter) -> Option<DataRow> {
+    let all = names(line, delimiter).len();
+    let fields = fields(line, delimiter);
+    let numbers = fields.iter().filter(|f| is_number(f)).count();
+    let known = numbers + fields.iter().filter(|f| says_missing(f.as_bytes())).count();
+    let share = known as f64 / fields.len() as f64;
+    (numbers > 0 && share >= 0.5).then_some(DataRow { filled: fields.len(), all, share })
+}
+
+/// Rows of one width on end.
+#[derive(Clone, Copy)]
+struct Block {
+    score: f64,
+    rows: usize,
+    /// First line, from zero.
+    first: usize,
+    width: usize,
+    /// Fields that every row has, filled or not.
+    fewest: usize,
+}
+
+impl Block {
+    fn of(row: &DataRow, line: usize) -> Self {
+        let score = row.share * row.share;
+        Self { score, rows: 1, first: line, width: row.filled, fewest: row.all }
+    }
+
+    /// The block with one more row, where the row fits.
+    fn with(self, row: &DataRow) -> Option<Self> {
+        let (width, fewest) = (self.width.max(row.filled), self.fewest.min(row.all));
+        (width <= fewest).then_some(Self {
+            score: self.score + row.share * row.share,
+            rows: self.rows + 1,
+            width,
+            fewest,
+            ..self
+        })
+    }
+
+    /// One column of numbers is what every separator finds; more columns tell more.
+    fn weight(&self) -> f64 {
+        if self.width > 1 { self.score } else { 0.5 * self.score }
+    }
+
+    fn mean_score(&self) -> f64 {
+        self.score / self.rows as f64
+    }
+}
+
+/// The longest block of rows of one width: its weight, first line (from zero) and width.
+///
+/// Where rows of just that kind stand above it, under a header, something stands among the data: they begin there, and
+/// reading them will tell what it is.
 fn block_of_data(lines: &[String], delimiter: Delimiter) -> Option<(f64, usize, usize)> {
-    let mut best: Option<(f64, usize, usize)> = None;
-    let mut open: Option<(f64, usize, usize)> = None;
+    let mut blocks: Vec<Block> = Vec::new();
+    let mut open = false;
     for (i, line) in lines.iter().enumerate() {
         let foreign = COMMENTS.iter().any(|c| line.trim_start().starts_with(c));
         if line.trim().is_empty() || is_comment(line) || foreign {
             continue;
         }
-        open = match (numeric_share(line, delimiter), open) {
-            (Some((width, share)), Some((score, first, w))) if w == width => {
-                Some((score + share * share, first, w))
-            }
-            (Some((width, share)), _) => Some((share * share, i, width)),
-            (None, _) => None,
+        let Some(row) = data_row(line, delimiter) else {
+            open = false;
+            continue;
         };
-        if let Some(block) = open
-            && best.is_none_or(|b| weight(block) > weight(b))
-        {
-            best = Some(block);
+        match blocks.last_mut().filter(|_| open).and_then(|b| Some((b.with(&row)?, b))) {
+            Some((longer, last)) => *last = longer,
+            None => blocks.push(Block::of(&row, i)),
         }
+        open = true;
     }
-    best.map(|b| (weight(b), b.1, b.2))
-}
-
-/// One column of numbers is what every separator finds; more columns tell more.
-fn weight((score, _, width): (f64, usize, usize)) -> f64 {
-    if width > 1 { score } else { 0.5 * score }
-}
-
-/// The header above a block of data, and what else is worth knowing.
-fn around(lines: &[String], delimiter: Delimiter, first: usize, width: usize) -> Sketch {
-    let uncommented = |line: &str| {
-        line.trim_start().trim_start_matches(['#', '%', '!', '*', '/']).trim().to_owned()
+    let best = *blocks.iter().reduce(|a, b| if b.weight() > a.weight() { b } else { a })?;
+    let alike = |b: &&Block| {
+        b.width == best.width
+            && b.mean_score() >= best.mean_score() - 0.01
+            && !headers_above(lines, delimiter, b.first, b.width).is_empty()
     };
-    let above: Vec<usize> = (0..first)
+    let first = blocks.iter().find(alike).map_or(best.first, |b| b.first.min(best.first));
+    Some((best.weight(), first, best.width))
+}
+
+/// A header without the mark of a comment in front of it.
+fn uncommented(line: &str) -> &str {
+    line.trim_start().trim_start_matches(['#', '%', '!', '*', '/']).trim()
+}
+
+/// Lines right above a first row that can be its header: as many words as columns.
+fn headers_above(lines: &[String], delimiter: Delimiter, first: usize, width: usize) -> Vec<usize> {
+    (0..first)
         .rev()
         .filter(|i| !lines[*i].trim().is_empty())
         .take(3)
         .filter(|i| {
-            let found = fields(&uncommented(&lines[*i]), delimiter);
-            let words = found.iter().filter(|f| !is_number(f, delimiter)).count();
+            let found = fields(uncommented(&lines[*i]), delimiter);
+            let words = found.iter().filter(|f| !is_number(f)).count();
             let fits = found.len() == width;
             fits && words * 2 > found.len() && !(width == 1 && is_prose(&lines[*i]))
         })
-        .collect();
+        .collect()
+}
+
+/// The header above a block of data, and what else is worth knowing.
+fn around(lines: &[String], delimiter: Delimiter, first: usize, width: usize) -> Sketch {
+    let above = headers_above(lines, delimiter, first, width);
     let is_units = |i: &usize| {
-        let found = fields(&uncommented(&lines[*i]), delimiter);
+        let found = fields(uncommented(&lines[*i]), delimiter);
         found.iter().all(|f| {
             let bare = f.trim_matches(['[', ']', '(', ')', '-', ' ']);
             bare.is_empty() || split_unit(&format!("x [{bare}]")).1.is_some()
@@ -174,11 +245,11 @@ fn around(lines: &[String], delimiter: Delimiter, first: usize, width: usize) ->
         [] => (None, None),
     };
     let names: Vec<String> = match header {
-        Some(i) => fields(&uncommented(&lines[i]), delimiter),
+        Some(i) => fields(uncommented(&lines[i]), delimiter),
         None => (1..=width).map(|n| format!("column {n}")).collect(),
     };
     let under: Vec<String> =
-        units_row.map_or_else(Vec::new, |i| fields(&uncommented(&lines[i]), delimiter));
+        units_row.map_or_else(Vec::new, |i| fields(uncommented(&lines[i]), delimiter));
     let units = (0..width)
         .map(|i| {
             let own = names.get(i).and_then(|n| split_unit(n).1);
@@ -189,17 +260,25 @@ fn around(lines: &[String], delimiter: Delimiter, first: usize, width: usize) ->
     let plain = |l: &String| !l.trim().is_empty() && !is_comment(l);
     let first_plain = lines.iter().position(plain);
     let next_plain = header.and_then(|h| (h + 1..lines.len()).find(|i| plain(&lines[*i])));
+    // Words between commas, and more fields under them: numbers with decimal commas make such rows.
+    let narrow = above.is_empty().then(|| first.checked_sub(1)).flatten().filter(|i| {
+        let found = fields(&lines[*i], delimiter);
+        delimiter == Delimiter::Byte(b',')
+            && (2..width).contains(&found.len())
+            && found.iter().all(|f| !is_number(f) && f.chars().any(char::is_alphabetic))
+    });
     let rows = || lines[first..].iter().filter(|l| plain(l));
     Sketch {
         delimiter,
-        decimal_comma: delimiter != Delimiter::Byte(b',')
-            && rows().any(|l| has_decimal_comma(l, delimiter)),
+        decimal_comma: rows().any(|l| has_decimal_comma(l, delimiter)),
         header_line: header.map_or(0, |i| i as u64 + 1),
         header_is_first: header.is_some() && header == first_plain,
         names,
         units,
         data_line: first as u64 + 1,
         data_is_next: next_plain == Some(first),
+        narrow_header: narrow.map(|i| fields(&lines[i], delimiter).len()),
+        first_row: lines[first].clone(),
         comment: COMMENTS.into_iter().find(|c| rows().any(|l| l.trim_start().starts_with(c))),
     }
 }
@@ -214,7 +293,9 @@ fn has_decimal_comma(line: &str, delimiter: Delimiter) -> bool {
     let found = buffer.split(line.as_bytes(), delimiter);
     (0..found.len()).any(|i| {
         let field = trimmed(found.get(i));
-        field.contains(&b',') && real(field, DecimalSign::CommaOrPoint).is_some()
+        // Between commas it stands in quotes, and `"1,108"` is a thousand there.
+        let thousands = delimiter == Delimiter::Byte(b',') && has_thousands(field);
+        field.contains(&b',') && real(field, DecimalSign::CommaOrPoint).is_some() && !thousands
     })
 }
 
@@ -304,6 +385,22 @@ mod tests {
         assert_eq!(seen("code\n12\n13\n12\n").names, ["code"]);
         assert!(sketch(b"nothing here\nbut words\n").is_none());
         assert!(sketch(b"").is_none());
+    }
+
+    #[test]
+    fn odd_rows_move_no_beginning() {
+        // Empty cells at the end of a row make it no narrower.
+        let s = seen("a,b\n0,1\n0,\n0,1\n0,2\n0,3\n");
+        assert_eq!((s.header_line, s.data_line, s.names.len()), (1, 2, 2));
+        let s = seen("a,b\n0,\n0,1\n0,2\n");
+        assert_eq!((s.header_line, s.data_line, s.names.len()), (1, 2, 2));
+        // A row that is none stands among the data; what is above it is data, too.
+        let s = seen("a,b\n0,1\n0,2\nmoved\n5,1\n5,2\n5,3\n");
+        assert_eq!((s.header_line, s.data_line), (1, 2));
+        let s = seen("Logger;3\nSerial;17\na;b\n5;1\n5;2\n5;3\n");
+        assert_eq!((s.header_line, s.data_line), (3, 4));
+        let s = seen("angle,code\n-30,5,100\n-30,5,101\n");
+        assert_eq!((s.header_line, s.narrow_header), (0, Some(2)));
     }
 
     #[test]

@@ -13,9 +13,9 @@ use tumble_core::{
 use crate::advice::with_similar_names;
 use crate::catalogue::{CATALOGUE_FILE, Catalogue, UserCatalogue};
 use crate::csv::{Dialect, Discard, Dwell, Mapping, RunFileOptions, read_run_file};
-use crate::error::{Place, Problem, ReadError};
+use crate::error::{Place, Problem, ReadError, nearest};
 use crate::experiment_file::{
-    self, BenchTable, CsvTable, DiscardValue, Orientation, RunTable, ScaleTable,
+    self, BenchTable, CsvTable, DiscardValue, ExperimentFile, Orientation, RunTable, ScaleTable,
 };
 use crate::source::Watch;
 use settings::{bench, dialect, discard, mapping, missing, output, targets, value};
@@ -95,6 +95,17 @@ pub(crate) fn read_described(
         problem: Problem::Format { seen: "not UTF-8 text", remedy: "save the file as UTF-8" },
     })?;
     let file = experiment_file::parse(text, EXPERIMENT_FILE)?;
+    read_parsed(folder, &file, bytes, catalogue, watch)
+        .map_err(|e| experiment_file::located(e, text, EXPERIMENT_FILE))
+}
+
+fn read_parsed(
+    folder: &Path,
+    file: &ExperimentFile,
+    bytes: &[u8],
+    catalogue: Option<&UserCatalogue>,
+    watch: &dyn Watch,
+) -> Result<ExperimentFolder, ReadError> {
     if let Some(format) = file.format.filter(|f| *f != 1) {
         return Err(value("format", format, "1: this is a file of a newer version"));
     }
@@ -159,7 +170,7 @@ pub(crate) fn read_described(
             bench,
             vertical,
             runs,
-            targets: targets(&file)?,
+            targets: targets(file)?,
         },
         id: file.id.clone(),
         issued,
@@ -249,7 +260,13 @@ impl Reader<'_> {
             place: Place::file(file),
             problem: Problem::Io(with_similar_names(e, &path)),
         };
-        let real = path.canonicalize().map_err(io)?;
+        let real = path.canonicalize().map_err(|e| match e.kind() {
+            std::io::ErrorKind::NotFound => ReadError {
+                place: Place::file(EXPERIMENT_FILE),
+                problem: Problem::NoFile { path: file.to_owned(), nearest: neighbour(&path) },
+            },
+            _ => io(e),
+        })?;
         let root = self.folder.canonicalize().map_err(io)?;
         if real.starts_with(root) { Ok(path) } else { Err(outside()) }
     }
@@ -501,6 +518,18 @@ fn cut_out(file: &str, dwells: &[Dwell]) -> Finding {
         limit: "block means within 5 of their standard deviations of the dwell's level".into(),
         remedy: "look at the dwells with tumble check: each must be one position".into(),
     }
+}
+
+/// A file in the folder of a path whose name is much like the path's.
+fn neighbour(path: &Path) -> Option<String> {
+    let wanted = path.file_name()?.to_string_lossy().into_owned();
+    let mut names: Vec<String> = std::fs::read_dir(path.parent()?)
+        .ok()?
+        .filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned()))
+        .filter(|name| name != EXPERIMENT_FILE)
+        .collect();
+    names.sort();
+    nearest(&wanted, &names)
 }
 
 /// An angle between −180° (exclusive) and 180°.

@@ -2,9 +2,9 @@
 
 use super::InitFacts;
 use super::draft::{Draft, Kind, quoted};
-use super::roles::{Roles, angle_unit, time_unit};
+use super::roles::{Roles, angle_unit, time_unit, unread_times};
 use super::survey::{Column, Survey};
-use crate::csv::{AngleUnit, Delimiter, TimeUnit};
+use crate::csv::{AngleUnit, Delimiter, HeaderUnit, TimeUnit};
 
 /// Whether two files can be read by one `[csv]`.
 pub(super) fn alike(a: &Survey, b: &Survey) -> bool {
@@ -76,7 +76,7 @@ pub(super) fn reference(survey: &Survey, known: &str, index: usize) -> Option<St
 
 /// Writes `columns` for a choice of the reading.
 pub(super) fn map(draft: &mut Draft, survey: &Survey, roles: &Roles, reading: Option<usize>) {
-    let real = reading.is_some_and(|i| !survey.columns[i].is_codes());
+    let real = reading.is_some_and(|i| survey.columns[i].is_real());
     let reading_name = if real { "output" } else { "code" };
     let pairs = [
         ("angle_deg", roles.angle),
@@ -135,7 +135,7 @@ pub(super) fn csv(draft: &mut Draft, surveys: &[Survey], roles: &Roles) {
         draft.set("csv", "comment", quoted(mark), "", Kind::Seen);
     }
     if let Some(i) = roles.time {
-        let (unit, why) = time_unit(&survey.columns[i], survey.rows);
+        let (unit, why) = time_unit(&survey.columns[i]);
         if unit != TimeUnit::Seconds {
             let kind = if why == "by the header" || unit == TimeUnit::Date {
                 Kind::Seen
@@ -145,6 +145,17 @@ pub(super) fn csv(draft: &mut Draft, surveys: &[Survey], roles: &Roles) {
             draft.set("csv", "time_unit", quoted(unit.name()), why, kind);
         }
     }
+}
+
+/// Says which column of times cannot be read: without it gaps and rates are not seen.
+pub(super) fn times(survey: &Survey, roles: &Roles, missing: &mut Vec<String>) {
+    let Some(column) = unread_times(survey, roles).map(|i| &survey.columns[i]) else { return };
+    let example = column.texts.iter().next().map_or("", String::as_str);
+    missing.push(format!(
+        "the times: column `{}` holds `{example}`, which is not read. Times are seconds or parts of them, times of day, or dates such as \
+         2026-11-20T10:15:30 or 20.11.2026 10:15:30; in 11/20 and 20/11 month and day cannot be told apart",
+        column.name
+    ));
 }
 
 /// Whether rows of a column are empty in any file.
@@ -201,6 +212,10 @@ pub(super) fn bench(
             "random error of setting an angle, standard, if you know it",
             Kind::Example,
         ),
+    }
+    if roles.angle.is_some_and(|i| survey.columns[i].unit == Some(HeaderUnit::Grad)) {
+        let why = "Grad: degrees in German, gon elsewhere";
+        draft.set("bench", "angle_unit", quoted(AngleUnit::Degrees.name()), why, Kind::Assumed);
     }
     if let Some(unit) = roles.angle.and_then(|i| angle_unit(&survey.columns[i]))
         && unit != AngleUnit::Degrees

@@ -12,6 +12,9 @@ const TABLES: [(&str, &str); 6] = [
     ("scale", "axis up and axis down"),
 ];
 
+/// Columns of the file. Longer comments stand above their line.
+const WIDEST: usize = 96;
+
 /// One line.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Line {
@@ -122,14 +125,32 @@ fn write_line(out: &mut String, l: &Line) {
     };
     let off = if l.kind == Kind::Example { "# " } else { "" };
     let text = format!("{off}{} = {}", l.key, l.value);
+    let beside = format!("{text:<36} # {mark}{}", l.why);
     // Writing into a String cannot fail.
     let _ = if l.why.is_empty() {
         writeln!(out, "{text}")
-    } else if text.contains('\n') || text.chars().count().max(36) + l.why.chars().count() > 96 {
-        writeln!(out, "# {mark}{}\n{text}", l.why)
+    } else if text.contains('\n') || beside.chars().count() > WIDEST {
+        write_comment(out, &format!("{mark}{}", l.why));
+        writeln!(out, "{text}")
     } else {
-        writeln!(out, "{text:<36} # {mark}{}", l.why)
+        writeln!(out, "{beside}")
     };
+}
+
+/// A comment in lines of its own.
+fn write_comment(out: &mut String, text: &str) {
+    let mut width = 0;
+    for word in text.split_whitespace() {
+        let length = word.chars().count() + 1;
+        if width == 0 || width + length > WIDEST {
+            out.push_str(if width == 0 { "#" } else { "\n#" });
+            width = 1;
+        }
+        out.push(' ');
+        out.push_str(word);
+        width += length;
+    }
+    out.push('\n');
 }
 
 #[cfg(test)]
@@ -147,6 +168,10 @@ mod tests {
         assert!(text.contains("[output]\nquantizer = \"round\""), "{text}");
         assert!(text.contains("# assumed: cannot be seen"), "{text}");
         assert!(!text.contains("9.81") && text.ends_with("[[run]]\nfile = \"a.csv\"\n"), "{text}");
+        d.set("output", "rate_hz", "50.0", "why ".repeat(40), Kind::Assumed);
+        assert!(d.toml().lines().all(|l| l.chars().count() <= WIDEST), "{}", d.toml());
+        assert!(d.toml().contains("why\nrate_hz = 50.0\n"), "{}", d.toml());
+        d.remove("output", "rate_hz");
         assert_eq!(d.of(Kind::Assumed).map(|(n, _)| n).collect::<Vec<_>>(), ["[output] quantizer"]);
     }
 }

@@ -98,14 +98,20 @@ pub fn draft_experiment(
     let mut missing = Vec::new();
     columns::sensor(&mut draft, facts, first, &roles);
     columns::csv(&mut draft, &surveys, &roles);
+    columns::times(first, &roles, &mut missing);
     columns::bench(&mut draft, facts, first, &roles, &mut missing);
     layout(&mut draft, &surveys, &roles);
     let read = refine::refine(&mut draft, &folder, facts, &surveys, &roles, &mut missing, watch);
     let listed = |kind: Kind| {
-        draft
-            .of(kind)
-            .map(|(key, l)| Assumed { key, value: l.value.clone(), why: l.why.clone() })
-            .collect()
+        let mut all: Vec<Assumed> = Vec::new();
+        for (key, l) in draft.of(kind) {
+            let new = Assumed { key, value: l.value.clone(), why: l.why.clone() };
+            // Lines of several runs are often the same.
+            if !all.contains(&new) {
+                all.push(new);
+            }
+        }
+        all
     };
     Ok(InitDraft {
         toml: draft.toml(),
@@ -149,21 +155,25 @@ fn read(draft: &Draft, folder: &Path, watch: &dyn Watch) -> Result<ExperimentFol
 
 /// Files as runs, as one file an angle, as up and down, or as continuous records.
 fn layout(draft: &mut Draft, surveys: &[Survey], roles: &roles::Roles) {
-    let named: Vec<(&Survey, Option<Named>)> =
-        surveys.iter().map(|s| (s, names::named(stem(&s.shown_as)))).collect();
+    let stems: Vec<&str> = surveys.iter().map(|s| stem(&s.shown_as)).collect();
+    let mut named: Vec<(&Survey, Option<Named>)> =
+        surveys.iter().zip(names::named(&stems)).collect();
     if roles.angle.is_some() {
         for s in surveys {
             draft.runs.push(vec![line("file", quoted(&s.shown_as), "", Kind::Seen)]);
         }
         return;
     }
-    let all_named = named.iter().all(|(_, n)| n.is_some());
-    let upright =
-        |wanted: Named| named.iter().filter(|(_, n)| *n == Some(wanted)).collect::<Vec<_>>();
+    let upright = |wanted: Named| {
+        let found: Vec<&Survey> =
+            named.iter().filter(|(_, n)| *n == Some(wanted)).map(|(s, _)| *s).collect();
+        found
+    };
     let (ups, downs) = (upright(Named::Up), upright(Named::Down));
-    if let ([up], [down], true) = (&ups[..], &downs[..], all_named) {
-        draft.set("scale", "up", quoted(&up.0.shown_as), "by its name", Kind::Seen);
-        draft.set("scale", "down", quoted(&down.0.shown_as), "by its name", Kind::Seen);
+    if let ([up], [down]) = (&ups[..], &downs[..]) {
+        draft.set("scale", "up", quoted(&up.shown_as), "by its name", Kind::Seen);
+        draft.set("scale", "down", quoted(&down.shown_as), "by its name", Kind::Seen);
+        named.retain(|(_, n)| !matches!(n, Some(Named::Up | Named::Down)));
     }
     let angles: Vec<(String, f64)> = named
         .iter()
@@ -176,7 +186,8 @@ fn layout(draft: &mut Draft, surveys: &[Survey], roles: &roles::Roles) {
         && (0..).zip(&angles).all(|(i, (_, a))| (*a - f64::from(i)).abs() < 1.5)
         && angles.windows(2).all(|w| w[1].1 - w[0].1 == 1.0)
         && angles[0].1 >= 0.0;
-    if all_named && !angles.is_empty() && !counted {
+    // One file alone is a record of many positions; a number in its name is anything.
+    if angles.len() == named.len() && surveys.len() > 1 && !angles.is_empty() && !counted {
         let mut sorted = angles;
         sorted.sort_by(|a, b| a.1.total_cmp(&b.1));
         let list: Vec<String> = sorted
@@ -186,8 +197,8 @@ fn layout(draft: &mut Draft, surveys: &[Survey], roles: &roles::Roles) {
         let value = format!("[\n{}\n]", list.join("\n"));
         let why = "one file an angle, by the names; their order is by angle: put them in the order of measurement";
         draft.runs.push(vec![line("files", value, why, Kind::Assumed)]);
-    } else if !all_named || angles.len() > 1 || counted {
-        for s in surveys {
+    } else {
+        for (s, _) in named {
             draft.runs.push(vec![
                 line("file", quoted(&s.shown_as), "", Kind::Seen),
                 line(

@@ -14,24 +14,44 @@ const COUNTERS: [&str; 16] = [
     "sn", "id", "ln", "adxl",
 ];
 
-/// What a name without its folder and endings says, if it says it once.
-pub(super) fn named(stem: &str) -> Option<Named> {
-    let lower = stem.to_lowercase().replace('−', "-");
+/// What names without their folders and endings say, each if it says it once.
+///
+/// A number that stands in all names alike is no angle of any: a date, the type of the sensor.
+pub(super) fn named(stems: &[&str]) -> Vec<Option<Named>> {
+    let lower: Vec<String> = stems.iter().map(|s| s.to_lowercase().replace('−', "-")).collect();
+    let mut numbers: Vec<Vec<f64>> = lower.iter().map(|l| angles(l)).collect();
+    let many = numbers.iter().map(Vec::len).min().unwrap_or(0);
+    if stems.len() > 1 && many > 1 && numbers.iter().all(|n| n.len() == many) {
+        let differs: Vec<bool> =
+            (0..many).map(|i| numbers.iter().any(|n| n[i] != numbers[0][i])).collect();
+        for row in &mut numbers {
+            let mut keep = differs.iter();
+            row.retain(|_| keep.next().copied().unwrap_or(true));
+        }
+    }
+    let one = |(lower, numbers): (&String, &Vec<f64>)| match (upright(lower), &numbers[..]) {
+        (Some(upright), _) => Some(upright),
+        (None, [angle]) => Some(Named::Angle(*angle)),
+        (None, _) => None,
+    };
+    lower.iter().zip(&numbers).map(one).collect()
+}
+
+/// Up or down.
+fn upright(lower: &str) -> Option<Named> {
     let words: Vec<&str> =
         lower.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty()).collect();
     let says = |any: &[&str]| words.iter().any(|w| any.contains(w));
     match (says(&["up", "oben", "top", "вверх"]), says(&["down", "unten", "bottom", "вниз"]))
     {
-        (true, false) => return Some(Named::Up),
-        (false, true) => return Some(Named::Down),
-        _ => {}
-    }
-    let numbers = angles(&lower);
-    match numbers[..] {
-        [one] => Some(Named::Angle(one)),
+        (true, false) => Some(Named::Up),
+        (false, true) => Some(Named::Down),
         _ => None,
     }
 }
+
+/// Letters that may follow an angle at once.
+const DEGREES: [&str; 7] = ["", "d", "deg", "degree", "degrees", "grad", "gr"];
 
 /// Numbers that can be angles.
 fn angles(text: &str) -> Vec<f64> {
@@ -69,9 +89,12 @@ fn angles(text: &str) -> Vec<f64> {
         let counted = COUNTERS
             .iter()
             .any(|c| word == *c || before.trim_end_matches(['-', '_', ' ']).ends_with(c));
+        // `lis3dh` holds no angle.
+        let after: String = text[i..].chars().take_while(|c| c.is_alphabetic()).collect();
         if let Ok(number) = number
             && number <= 360.0
             && !counted
+            && DEGREES.contains(&after.as_str())
         {
             found.push(if negative { -number } else { number });
         }
@@ -106,7 +129,17 @@ mod tests {
             ("record", None),
             ("30_60", None),
         ] {
-            assert_eq!(named(name), expected, "{name}");
+            assert_eq!(named(&[name]), [expected], "{name}");
         }
+    }
+
+    #[test]
+    fn what_all_names_hold_is_no_angle() {
+        let angle = |a| Some(Named::Angle(a));
+        let dated = ["2026-11-20_lis3dh_m60deg", "2026-11-20_lis3dh_0deg"];
+        assert_eq!(named(&dated), [angle(-60.0), angle(0.0)]);
+        assert_eq!(named(&["bma180_-30", "bma180_45"]), [angle(-30.0), angle(45.0)]);
+        assert_eq!(named(&["lis3dh"]), [None]);
+        assert_eq!(named(&["30_60", "40_50"]), [None, None]);
     }
 }

@@ -18,13 +18,15 @@ use crate::source::Watch;
 
 /// Candidates for the reading that are tried.
 const CANDIDATES: usize = 8;
-/// Left-over, relative to 1 g, from which another unit of the dial is tried.
+/// Left-over, relative to half the spread of the dwells, from which another unit of the dial is tried.
 const BAD_FIT: f64 = 0.003;
 /// How many times better another reading of the file must fit before it is assumed.
 const MUCH_BETTER: f64 = 5.0;
 /// Logarithm of the ratio to a mode's scale factor up to which the unit is taken to be in that mode: modes differ by
 /// factors of two.
 const NEAR_MODE: f64 = 0.25;
+/// Fewest codes in 1 g: averages that are smaller are no codes.
+const FEWEST_CODES_IN_G: f64 = 20.0;
 /// Word lengths of converters.
 const WORDS: [u32; 9] = [8, 10, 12, 14, 16, 18, 20, 24, 32];
 
@@ -59,8 +61,7 @@ impl Refiner<'_> {
     fn run(&mut self) -> Result<ExperimentFolder, ReadError> {
         let chosen = self.choose_reading()?;
         self.describe_reading(chosen);
-        if let Some(found) = self.dwells_to_list() {
-            self.list_dwells(&found);
+        if self.list_dwells() {
             return read(self.draft, self.folder, self.watch);
         }
         if let Ok(experiment) = read(self.draft, self.folder, self.watch) {
@@ -135,12 +136,12 @@ impl Refiner<'_> {
         let survey = &self.surveys[0];
         let column = &survey.columns[index];
         let averaged = self.roles.mean == Some(index);
+        let unit = column.unit.and_then(HeaderUnit::of_readings);
         for key in ["code_format", "code_bits", "missing"] {
             self.draft.remove("csv", key);
         }
         self.draft.remove("output", "unit");
-        let unit = column.unit.and_then(HeaderUnit::of_readings);
-        if averaged || (column.is_codes() && unit.is_none()) {
+        if unit.is_none() && (averaged || !column.is_real()) {
             let why = "not seen in these codes; `floor` would shift the bias by half an LSB";
             self.draft.set("output", "quantizer", quoted("round"), why, Kind::Assumed);
         } else {
@@ -153,7 +154,8 @@ impl Refiner<'_> {
         }
         if self.facts.nominal_scale.is_none() {
             // Stands in until the readings have been looked at.
-            self.draft.set("output", "nominal_scale", "1.0", "", Kind::Assumed);
+            let why = "stands in until the readings have angles: write the data sheet's value, m/s² per LSB (or per unit)";
+            self.draft.set("output", "nominal_scale", "1.0", why, Kind::Assumed);
         }
         if column.is_hexadecimal() {
             let bits =
@@ -191,31 +193,31 @@ impl Refiner<'_> {
         }
     }
 
-    /// Dwells of a continuous record, where their angles are still to be listed.
-    fn dwells_to_list(&self) -> Option<Vec<String>> {
-        match read(self.draft, self.folder, self.watch).map_err(|e| e.problem) {
-            Err(Problem::AnglesOfDwells { found, .. }) => Some(found),
-            _ => None,
-        }
-    }
-
-    fn list_dwells(&mut self, found: &[String]) {
-        let several = self.draft.runs.len() > 1;
-        for run in &mut self.draft.runs {
+    /// Lists the dwells of continuous records, each for its angle to be filled in; `false` where there are none.
+    fn list_dwells(&mut self) -> bool {
+        let mut dwells = 0;
+        for i in 0..self.draft.runs.len() {
+            // Each file has its own dwells, and is read alone to find them.
+            let mut alone = self.draft.clone();
+            alone.runs = vec![self.draft.runs[i].clone()];
+            let error = read(&alone, self.folder, self.watch).map_err(|e| e.problem);
+            let Err(Problem::AnglesOfDwells { found, .. }) = error else { continue };
+            let run = &mut self.draft.runs[i];
             let Some(angles) = run.iter_mut().find(|l| l.key == "angles_deg") else { continue };
-            // Each file has its own dwells; only the first was looked at.
             let list: Vec<String> = found.iter().map(|f| format!("    nan, # {f}")).collect();
             angles.value = format!("[\n{}\n]", list.join("\n"));
             angles.why =
                 "the sensor stood still here; write the dial's angle in place of each nan".into();
-            if several {
-                break;
-            }
+            dwells += found.len();
         }
-        self.missing.push(format!(
-            "the angles: the files name none. {} dwells were found; write the dial's angle of each into angles_deg",
-            found.len()
-        ));
+        if dwells > 0 {
+            let dwells =
+                if dwells == 1 { "1 dwell was".into() } else { format!("{dwells} dwells were") };
+            self.missing.push(format!(
+                "the angles: the files name none. {dwells} found; write the dial's angle of each into angles_deg"
+            ));
+        }
+        dwells > 0
     }
 
     /// Scale, sign, zero and unit of the dial.
@@ -225,7 +227,7 @@ impl Refiner<'_> {
         if let Some(better) = self.try_words(&seen, chosen) {
             seen = better;
         }
-        if let Some(better) = self.try_units_of_the_dial(&seen) {
+        if let Some(better) = self.try_units_of_the_dial(&seen, experiment) {
             seen = better;
         }
         self.sign_and_zero(&seen);
@@ -268,8 +270,9 @@ impl Refiner<'_> {
         let before = self.draft.clone();
         self.draft.set(table, key, value, why, Kind::Assumed);
         let tried = read(self.draft, self.folder, self.watch).ok().and_then(|e| look(&e));
+        // In readings, not relative to 1 g: small angles in a wrong unit make 1 g of any size.
         let better = tried.filter(|t| {
-            let (old, new) = (seen.relative_rms(), t.relative_rms());
+            let (old, new) = (seen.residual_rms, t.residual_rms);
             old.zip(new).is_some_and(|(old, new)| new * MUCH_BETTER < old)
         });
         if better.is_none() {
@@ -278,9 +281,19 @@ impl Refiner<'_> {
         better
     }
 
-    /// Signed words that were written without their sign.
+    /// Signed words that were written without their sign; hexadecimal words that have none.
     fn try_words(&mut self, seen: &FirstLook, chosen: Option<usize>) -> Option<FirstLook> {
         let column = &self.surveys[0].columns[chosen?];
+        if column.is_hexadecimal() {
+            let before = self.draft.clone();
+            self.draft.remove("csv", "code_bits");
+            let why = "words without a sign: with one the readings would not follow the angles";
+            let tried = self.try_line("csv", "code_format", quoted("hex"), why.into(), seen);
+            if tried.is_none() {
+                *self.draft = before;
+            }
+            return tried;
+        }
         if !column.is_codes() || column.is_hexadecimal() || column.least < 0.0 {
             return None;
         }
@@ -313,9 +326,18 @@ impl Refiner<'_> {
         better
     }
 
-    fn try_units_of_the_dial(&mut self, seen: &FirstLook) -> Option<FirstLook> {
+    fn try_units_of_the_dial(
+        &mut self,
+        seen: &FirstLook,
+        experiment: &ExperimentFolder,
+    ) -> Option<FirstLook> {
         let column = &self.surveys[0].columns[self.roles.angle?];
-        if angle_unit(column).is_some() || seen.relative_rms().is_none_or(|r| r < BAD_FIT) {
+        let means: Vec<f64> =
+            positions(experiment).into_iter().filter_map(|p| p.readings.mean()).collect();
+        let spread = means.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+            - means.iter().copied().fold(f64::INFINITY, f64::min);
+        let fits = seen.residual_rms.is_none_or(|r| r < BAD_FIT * 0.5 * spread);
+        if angle_unit(column).is_some() || fits {
             return None;
         }
         for (unit, limit) in [("rad", 6.3), ("gon", 400.0)] {
@@ -386,13 +408,16 @@ impl Refiner<'_> {
         }
         let column = chosen.map(|i| &self.surveys[0].columns[i]);
         let header = column.and_then(|c| c.unit).and_then(HeaderUnit::of_readings);
-        let real = column.is_some_and(|c| !c.is_codes()) && self.roles.mean.is_none();
+        // Averages have decimals, whatever they are of; no converter has twenty codes in 1 g.
+        let averaged = self.roles.mean.is_some() && seen.amplitude >= FEWEST_CODES_IN_G;
+        let real = column.is_some_and(|c| !c.is_codes()) && !averaged;
         let (unit, seen_in_header) = match header {
             Some(unit) => (unit, true),
             None if real => (unit_by_size(seen), false),
             None => ("LSB", false),
         };
         if real || header.is_some() {
+            self.draft.set("output", "quantizer", quoted("none"), "real numbers", Kind::Seen);
             let kind = if seen_in_header { Kind::Seen } else { Kind::Assumed };
             let why =
                 if seen_in_header { "by the header" } else { "by the size of the readings at 1 g" };

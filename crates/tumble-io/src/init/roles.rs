@@ -26,21 +26,27 @@ pub(super) fn roles(survey: &Survey) -> Roles {
         columns.iter().position(|c| c.role == Some(role) && fits(c))
     };
     let mut found = Roles {
-        time: named(Role::Time, &|c| c.numbers + c.dates == c.filled && c.filled > 0)
+        time: named(Role::Time, &is_time)
             .or_else(|| columns.iter().position(|c| c.dates > 0 && c.dates == c.filled))
             .or_else(|| {
                 columns.iter().position(|c| {
-                    c.is_numeric()
-                        && c.always_rises()
-                        && !matches!(c.role, Some(Role::Position | Role::Angle | Role::Reading))
+                    c.is_numeric() && c.always_rises() && c.role.is_none() && !is_row_number(c)
                 })
             }),
-        angle: named(Role::Angle, &|c| c.numbers + c.dms == c.filled && c.filled > 0),
+        // An inclinometer beside the dial changes from row to row; the dial stands for a dwell.
+        angle: named(Role::Angle, &|c| is_angle(c) && c.stays())
+            .or_else(|| named(Role::Angle, &is_angle)),
         mean: named(Role::Mean, &Column::is_numeric),
         samples: named(Role::Samples, &|c| c.is_codes() && c.least >= 1.0),
         std: named(Role::Std, &Column::is_numeric),
-        temperature: named(Role::Temperature, &Column::is_numeric),
-        position: named(Role::Position, &|c| c.filled > 0),
+        // `T` is a time where it goes up, else a temperature.
+        temperature: named(Role::Temperature, &|c| {
+            let other = matches!(c.unit, Some(HeaderUnit::Fahrenheit | HeaderUnit::Kelvin));
+            c.is_numeric() && !other
+        })
+        .or_else(|| named(Role::Time, &|c| c.name.trim() == "T" && c.is_numeric() && !c.goes_up())),
+        // A number of rows is no number of dwells.
+        position: named(Role::Position, &|c| c.filled > 0 && c.stays()),
         sensor: named(Role::Sensor, &|c| (2..24).contains(&c.texts.len()) && c.changes > 0),
         readings: Vec::new(),
     };
@@ -63,7 +69,7 @@ pub(super) fn roles(survey: &Survey) -> Roles {
                 && c.stays()
         });
     }
-    let number = |c: &Column| c.is_numeric() || c.is_codes();
+    let number = |c: &Column| (c.is_numeric() || c.is_codes()) && !is_row_number(c);
     let mut readings: Vec<usize> = (0..columns.len())
         .filter(|i| !taken(&found, *i) && number(&columns[*i]) && columns[*i].texts.len() > 1)
         .collect();
@@ -76,12 +82,41 @@ pub(super) fn roles(survey: &Survey) -> Roles {
     }
     // Where a name says nothing, what moves most is the likeliest.
     readings.sort_by_key(|i| (!named_reading(i), std::cmp::Reverse(columns[*i].changes.min(1000))));
+    if readings.is_empty() {
+        // Cells that are no numbers, under a name of readings: reading them will tell what they are.
+        readings = (0..columns.len())
+            .filter(|i| !taken(&found, *i) && columns[*i].filled > 0 && named_reading(i))
+            .collect();
+    }
     found.readings = readings;
     found
 }
 
+fn is_angle(c: &Column) -> bool {
+    c.numbers + c.dms == c.filled && c.filled > 0
+}
+
+fn is_time(c: &Column) -> bool {
+    c.numbers + c.dates == c.filled && c.goes_up() && c.unit != Some(HeaderUnit::LongTime)
+}
+
+/// Whether a column counts the rows.
+fn is_row_number(c: &Column) -> bool {
+    let rows = c.filled.saturating_sub(1) as f64;
+    c.whole == c.filled && c.filled > 8 && c.rising == c.filled - 1 && c.largest - c.least == rows
+}
+
+/// A column that is named as times are and that holds none that can be read.
+pub(super) fn unread_times(survey: &Survey, roles: &Roles) -> Option<usize> {
+    let unread = |c: &Column| {
+        let long = c.unit == Some(HeaderUnit::LongTime);
+        c.role == Some(Role::Time) && c.filled > 0 && (long || c.numbers + c.dates < c.filled)
+    };
+    if roles.time.is_some() { None } else { survey.columns.iter().position(unread) }
+}
+
 /// The unit of a column of times, and why.
-pub(super) fn time_unit(c: &Column, rows: u64) -> (TimeUnit, &'static str) {
+pub(super) fn time_unit(c: &Column) -> (TimeUnit, &'static str) {
     match c.unit {
         _ if c.dates > 0 => return (TimeUnit::Date, "dates or times of day"),
         Some(HeaderUnit::Milliseconds) => return (TimeUnit::Milliseconds, "by the header"),
@@ -106,8 +141,7 @@ pub(super) fn time_unit(c: &Column, rows: u64) -> (TimeUnit, &'static str) {
         t if t > 1e9 => return (TimeUnit::Seconds, epoch),
         _ => {}
     }
-    let step = (c.largest - c.least) / rows.max(2) as f64;
-    match step {
+    match c.typical_step().unwrap_or_default() {
         s if c.whole == c.filled && s >= 900.0 => {
             (TimeUnit::Microseconds, "whole numbers with steps near a thousand and more")
         }
