@@ -10,6 +10,8 @@ mod digest;
 mod error;
 mod experiment_file;
 mod folder;
+#[doc(hidden)]
+pub mod fuzzing;
 mod init;
 mod output;
 pub mod passport;

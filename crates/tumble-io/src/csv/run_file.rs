@@ -98,7 +98,8 @@ pub(crate) fn read_run_file(
     Ok(RunFile { dwells, ignored, sha256 })
 }
 
-fn read_lines<R: std::io::Read>(
+/// Reads header and rows.
+pub(crate) fn read_lines<R: std::io::Read>(
     lines: &mut Lines<R>,
     options: &RunFileOptions<'_>,
 ) -> Result<(Vec<Dwell>, Vec<String>), ReadError> {
