@@ -46,7 +46,7 @@ impl fmt::Display for Place {
 }
 
 /// Text from outside, safe to print on a terminal: control characters become visible.
-fn printable(text: &str) -> String {
+pub(crate) fn printable(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
 }
 
@@ -58,6 +58,28 @@ pub(crate) fn visible(text: &str) -> String {
         out.push('…');
     }
     out
+}
+
+/// A list for people: the first forty, and how many more there are.
+pub(crate) fn first_of(names: &[String]) -> String {
+    const SHOWN: usize = 40;
+    let mut out = names[..names.len().min(SHOWN)].join(", ");
+    if names.len() > SHOWN {
+        out.push_str(&format!(", and {} more", names.len() - SHOWN));
+    }
+    out
+}
+
+/// What to do where the operating system refuses.
+pub(crate) fn io_remedy(e: &std::io::Error) -> &'static str {
+    use std::io::ErrorKind as K;
+    match e.kind() {
+        K::NotFound | K::NotADirectory | K::InvalidFilename | K::InvalidInput => {
+            "; correct the name, or put the file there"
+        }
+        K::PermissionDenied => "; allow yourself to read it",
+        _ => "",
+    }
 }
 
 /// Input that cannot be read; nothing was judged.
@@ -137,6 +159,28 @@ pub enum Problem {
     TooDense {
         /// Limit of unpacked over stored bytes.
         limit: u64,
+    },
+    /// A packed file that does not unpack.
+    Damaged {
+        /// gzip or zstd.
+        packing: &'static str,
+        /// What the decoder says.
+        message: String,
+    },
+    /// A document that is longer than any of its kind.
+    TooLong {
+        /// Limit in bytes.
+        limit: u64,
+    },
+    /// More dwells than a file may hold.
+    TooManyDwells {
+        /// Limit of dwells.
+        limit: usize,
+    },
+    /// More different codes, over all dwells of a file, than are kept.
+    TooManyCodes {
+        /// Limit of codes.
+        limit: usize,
     },
     /// The file was written to while it was read.
     Changed,
@@ -239,15 +283,35 @@ impl fmt::Display for ReadError {
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let list = |names: &[String]| {
-            names.iter().map(|n| format!("`{}`", visible(n))).collect::<Vec<_>>().join(", ")
+            let quoted: Vec<String> = names.iter().map(|n| format!("`{}`", visible(n))).collect();
+            first_of(&quoted)
         };
         match self {
-            Self::Io(e) => write!(f, "{e}"),
+            Self::Io(e) => write!(f, "{e}{}", io_remedy(e)),
+            Self::Damaged { packing, message } => write!(
+                f,
+                "the {packing} file is damaged or was cut off ({}); copy it again, or unpack what is left and look at it",
+                visible(message)
+            ),
+            Self::TooLong { limit } => write!(
+                f,
+                "more than {} MiB; no such file is that long: is this another file?",
+                limit >> 20
+            ),
+            Self::TooManyDwells { limit } => write!(
+                f,
+                "more than {limit} dwells; dwells are consecutive rows of one angle, so check the angle column, or give \
+                 averages in several files"
+            ),
+            Self::TooManyCodes { limit } => write!(
+                f,
+                "more than {limit} different codes in the dwells of one file; split the file into runs, or give averages"
+            ),
             Self::NoExperiment { folder } => write!(
                 f,
                 "no experiment.toml in {}; an experiment is a folder with experiment.toml and its run files \
                  (`tumble simulate OUT --preset paper-3` writes one to look at)",
-                folder.display()
+                visible(&folder.display().to_string())
             ),
             Self::Toml { message } => write!(f, "{}", visible_lines(message)),
             Self::UnknownKey { key, nearest, known } => {
@@ -358,5 +422,17 @@ impl std::error::Error for ReadError {
             Problem::Io(e) => Some(e),
             _ => None,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_end() {
+        let names: Vec<String> = (0..1000).map(|i| i.to_string()).collect();
+        assert!(first_of(&names).ends_with("38, 39, and 960 more"), "{}", first_of(&names));
+        assert_eq!(first_of(&names[..2]), "0, 1");
     }
 }

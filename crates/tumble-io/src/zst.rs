@@ -52,7 +52,7 @@ impl<R: Read> ZstReader<R> {
 }
 
 fn broken(e: impl std::fmt::Display) -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidData, format!("the zstd file is damaged: {e}"))
+    io::Error::new(io::ErrorKind::InvalidData, e.to_string())
 }
 
 impl<R: Read> Read for ZstReader<R> {

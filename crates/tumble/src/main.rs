@@ -19,5 +19,6 @@ fn main() -> std::process::ExitCode {
         cli::Command::Simulate(a) => commands::simulate::run(&a),
         cli::Command::Compensate(a) => commands::compensate::run(&a),
     };
-    code.into()
+    // What was being written is whole; it was asked to stop all the same.
+    if interrupt::interrupted() { exit::Exit::Interrupted.into() } else { code.into() }
 }

@@ -3,6 +3,8 @@
 /// The paper's plan: sixty angles in 1° steps.
 const PAPER_FIRST_DEG: i32 = -30;
 const PAPER_LAST_DEG: i32 = 29;
+/// Most angles of a plan: what an experiment's file may hold.
+const MOST_ANGLES: u32 = 10_000;
 
 /// A plan that is not understood.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -15,7 +17,7 @@ impl std::fmt::Display for PlanError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(
             f,
-            "`{}` is no plan: write FIRST:LAST:COUNT (-65:65:60), a list of degrees (-65,0,65), or paper",
+            "`{}` is no plan: write FIRST:LAST:COUNT (-65:65:60, at most {MOST_ANGLES}), a list of degrees (-65,0,65), or paper",
             self.text
         )
     }
@@ -32,6 +34,7 @@ impl std::error::Error for PlanError {}
 /// assert_eq!(parse_plan("-20, 7.5")?, [-20.0, 7.5]);
 /// assert_eq!(parse_plan("paper")?.len(), 60);
 /// assert!(parse_plan("-65:65").is_err());
+/// assert!(parse_plan("-65:65:4000000000").is_err());
 /// # Ok::<(), tumble_core::simulate::PlanError>(())
 /// ```
 pub fn parse_plan(text: &str) -> Result<Vec<f64>, PlanError> {
@@ -49,6 +52,7 @@ pub fn parse_plan(text: &str) -> Result<Vec<f64>, PlanError> {
             let n: u32 = count.trim().parse().map_err(|_| wrong(count))?;
             match n {
                 0 => Err(wrong(text)),
+                _ if n > MOST_ANGLES => Err(wrong(count)),
                 1 => Ok(vec![first]),
                 _ => Ok((0..n)
                     .map(|i| first + (last - first) * f64::from(i) / f64::from(n - 1))

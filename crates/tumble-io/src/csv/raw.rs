@@ -18,6 +18,10 @@ use crate::error::{Place, Problem, ReadError};
 const DISTINCT_LIMIT: usize = 1 << 20;
 /// Samples after which the number of different codes is looked at.
 const DISTINCT_CHECK: u64 = 1 << 16;
+/// Dwells of one file: a table that is turned by motor has some thousand; more is a column that is no angle.
+pub(super) const MOST_DWELLS: usize = 10_000;
+/// Different codes over all dwells of a file. Sixty dwells of 100 000 different codes each stay below.
+const MOST_CODES: usize = 1 << 23;
 /// Samples of one dwell that are kept to look for its settled stretch: a day at 50 Hz.
 pub(super) const KEPT_LIMIT: usize = 1 << 23;
 
@@ -169,7 +173,7 @@ pub(super) fn read<R: Read>(
     let at = Indices::of(header, columns, options)?;
     let mut dwells = Vec::new();
     let mut open: Option<Open> = None;
-    let mut zeros = ZeroRows::default();
+    let (mut zeros, mut codes) = (ZeroRows::default(), 0);
     let mut fields_of_line = FieldBuffer::default();
     while let Some((number, line)) = lines.next_data()? {
         let fields = fields_of_line.split(line, columns.delimiter);
@@ -211,6 +215,10 @@ pub(super) fn read<R: Read>(
                 };
                 if let Some(done) = open.replace(next) {
                     dwells.push(done.gathered.close(options)?);
+                    codes += dwells.last().map_or(0, different_codes);
+                    if let Some(problem) = too_many(dwells.len(), codes) {
+                        return Err(ReadError { place: row.place(), problem });
+                    }
                 }
             }
         }
@@ -225,6 +233,22 @@ pub(super) fn read<R: Read>(
         dwells.push(done.gathered.close(options)?);
     }
     Ok(dwells)
+}
+
+/// What is wrong with so many dwells that hold so many different codes.
+pub(super) fn too_many(dwells: usize, codes: usize) -> Option<Problem> {
+    match () {
+        () if dwells >= MOST_DWELLS => Some(Problem::TooManyDwells { limit: MOST_DWELLS }),
+        () if codes > MOST_CODES => Some(Problem::TooManyCodes { limit: MOST_CODES }),
+        () => None,
+    }
+}
+
+fn different_codes(dwell: &Dwell) -> usize {
+    match &dwell.readings {
+        Readings::Codes { histogram, .. } => histogram.distinct(),
+        _ => 0,
+    }
 }
 
 /// Rows at the end of a file in which every number is zero: what loggers leave that write files of a fixed length.

@@ -83,6 +83,9 @@ impl<'a> Fields<'a> {
 const DECIMAL_COMMA: &str = "write a decimal point, and no thousands marks; where all numbers have decimal commas, decimal = \",\" in [csv]";
 const MISSING: &str = "fill in the cell or remove the row; missing = \"skip\" in [csv] leaves rows without a reading out";
 
+/// No dial counts farther: a thousand turns.
+const FARTHEST_DIAL_DEG: f64 = 360_000.0;
+
 /// What to do about a code that is none.
 fn code_remedy(text: &[u8], format: CodeFormat) -> &'static str {
     let hex = CodeFormat { hexadecimal: true, bits: None };
@@ -157,7 +160,8 @@ impl Row<'_> {
     pub(super) fn dial(&self, index: usize, dialect: &Dialect) -> Result<f64, ReadError> {
         let unit = dialect.angle_unit.unwrap_or_default();
         let text = self.text(index);
-        unit.value(text, self.columns.decimal).ok_or_else(|| {
+        let possible = |v: &f64| (v * unit.in_deg()).abs() <= FARTHEST_DIAL_DEG;
+        unit.value(text, self.columns.decimal).filter(possible).ok_or_else(|| {
             let remedy = match text {
                 [] => "fill in the empty cell (the angle stands in every row), or remove the row",
                 t if unit != AngleUnit::DegreesMinutesSeconds && dms(t, DecimalSign::CommaOrPoint).is_some() => {

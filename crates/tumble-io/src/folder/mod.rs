@@ -2,6 +2,7 @@
 
 mod settings;
 
+use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
 use std::thread;
 
@@ -11,15 +12,18 @@ use tumble_core::{
 };
 
 use crate::csv::{Dialect, Discard, Dwell, Mapping, RunFileOptions, read_run_file};
-use crate::error::{Place, Problem, ReadError};
+use crate::error::{Place, Problem, ReadError, first_of};
 use crate::experiment_file::{
     self, BenchTable, CsvTable, DiscardValue, Orientation, RunTable, ScaleTable,
 };
-use crate::source::Watch;
+use crate::source::{DOCUMENT_LIMIT, Watch, read_document};
 use settings::{bench, dialect, discard, mapping, missing, output, targets, value};
 
 /// Name of the file that makes a folder an experiment.
 pub(crate) const EXPERIMENT_FILE: &str = "experiment.toml";
+
+/// Most runs of an experiment: three power-ups a day for a year.
+const MOST_RUNS: usize = 1000;
 
 /// One input with its digest.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -62,12 +66,20 @@ pub struct RunRemark {
 /// data are no error here.
 pub fn read_experiment(folder: &Path, watch: &dyn Watch) -> Result<ExperimentFolder, ReadError> {
     let toml_path = folder.join(EXPERIMENT_FILE);
-    let bytes = std::fs::read(&toml_path).map_err(|e| match e.kind() {
-        std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory => ReadError {
-            place: Place::file(folder.display().to_string()),
-            problem: Problem::NoExperiment { folder: folder.to_path_buf() },
-        },
-        _ => ReadError { place: Place::file(EXPERIMENT_FILE), problem: Problem::Io(e) },
+    let read = read_document(&toml_path, EXPERIMENT_FILE, DOCUMENT_LIMIT);
+    let bytes = read.map_err(|e| match &e.problem {
+        Problem::Io(io)
+            if matches!(
+                io.kind(),
+                std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory
+            ) =>
+        {
+            ReadError {
+                place: Place::file(folder.display().to_string()),
+                problem: Problem::NoExperiment { folder: folder.to_path_buf() },
+            }
+        }
+        _ => e,
     })?;
     read_described(folder, &bytes, watch)
 }
@@ -150,6 +162,14 @@ pub(crate) fn read_described(
 
 /// Runs are named by `name`, else after their file, else by their number; names are unique.
 fn run_names(runs: &[RunTable]) -> Result<Vec<String>, ReadError> {
+    if runs.len() > MOST_RUNS {
+        let given = format!("{} tables", runs.len());
+        return Err(value(
+            "[[run]]",
+            given,
+            &format!("at most {MOST_RUNS} runs in one experiment"),
+        ));
+    }
     let names: Vec<String> = runs
         .iter()
         .enumerate()
@@ -159,13 +179,12 @@ fn run_names(runs: &[RunTable]) -> Result<Vec<String>, ReadError> {
             (None, None) => format!("run-{}", i + 1),
         })
         .collect();
-    for (i, name) in names.iter().enumerate() {
-        if names[..i].contains(name) {
-            return Err(ReadError {
-                place: Place::file(EXPERIMENT_FILE),
-                problem: Problem::RunName { name: name.clone(), known: names },
-            });
-        }
+    let mut seen = BTreeSet::new();
+    if let Some(twice) = names.iter().find(|name| !seen.insert(*name)) {
+        return Err(ReadError {
+            place: Place::file(EXPERIMENT_FILE),
+            problem: Problem::RunName { name: twice.clone(), known: names.clone() },
+        });
     }
     Ok(names)
 }
@@ -275,6 +294,12 @@ impl Reader<'_> {
         }
         if asked.angles_deg.is_some() && files.len() != 1 {
             return Err(value("[[run]] angles_deg", "given beside files", "one of the two"));
+        }
+        if let Some(angle) = files.iter().filter_map(|f| f.1).find(|a| !a.is_finite()) {
+            return Err(value("[[run]] files angle_deg", angle, "the dial's angle in degrees"));
+        }
+        if let Some(t) = table.temperature_degc.filter(|t| !t.is_finite()) {
+            return Err(value("[[run]] temperature_degc", t, "a temperature in °C"));
         }
         for (file, fixed_angle_deg) in files {
             let options = self.options(&asked, fixed_angle_deg);
@@ -460,7 +485,7 @@ fn ignored_columns(file: &str, columns: &[String]) -> Finding {
     Finding {
         kind: FindingKind::IgnoredColumns,
         place: file.to_owned(),
-        observed: columns.join(", "),
+        observed: first_of(columns),
         limit: "angle_deg, code, t_s, temperature_degc, position".into(),
         remedy: "if one of them holds something that matters, name it in `columns` of its [[run]]"
             .into(),

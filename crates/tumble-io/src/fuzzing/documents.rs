@@ -76,7 +76,12 @@ pub fn init(csv: &[u8]) {
     match draft_experiment(&[file], &InitFacts::default(), &()) {
         Ok(draft) => {
             let parsed = crate::experiment_file::parse(&draft.toml, "experiment.toml");
-            assert!(parsed.is_ok(), "{}\n{}", parsed.map_or_else(|e| e.to_string(), |_| String::new()), draft.toml);
+            assert!(
+                parsed.is_ok(),
+                "{}\n{}",
+                parsed.map_or_else(|e| e.to_string(), |_| String::new()),
+                draft.toml
+            );
             let again = read_described(scratch.path(), draft.toml.as_bytes(), &());
             match (&draft.read, &again) {
                 (Ok(a), Ok(b)) => assert_eq!(a, b),

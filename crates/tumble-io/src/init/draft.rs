@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use crate::error::printable;
+
 /// Tables in the order in which they are written, with what stands under their names.
 const TABLES: [(&str, &str); 6] = [
     ("", ""),
@@ -122,13 +124,15 @@ fn write_line(out: &mut String, l: &Line) {
     };
     let off = if l.kind == Kind::Example { "# " } else { "" };
     let text = format!("{off}{} = {}", l.key, l.value);
+    // Texts of the files stand in it, and a comment may hold no control characters.
+    let why = printable(&l.why);
     // Writing into a String cannot fail.
     let _ = if l.why.is_empty() {
         writeln!(out, "{text}")
     } else if text.contains('\n') || text.chars().count() > 44 {
-        writeln!(out, "# {mark}{}\n{text}", l.why)
+        writeln!(out, "# {mark}{why}\n{text}")
     } else {
-        writeln!(out, "{text:<36} # {mark}{}", l.why)
+        writeln!(out, "{text:<36} # {mark}{why}")
     };
 }
 

@@ -7,6 +7,9 @@
 mod build;
 mod types;
 
+use std::io::Read as _;
+use std::path::Path;
+
 pub use build::build;
 pub(crate) use build::quantizer_name;
 pub use types::*;
@@ -14,7 +17,23 @@ pub use types::*;
 /// Name and major version of the format.
 pub const SCHEMA: &str = "tumble-passport/1";
 
+/// Longest passport, bytes. One of ten thousand dwells has 10 MB.
+pub const LONGEST: u64 = 32 << 20;
+
 impl Passport {
+    /// Reads a passport's file. It may be a pipe; no more than [`LONGEST`] bytes of it are read.
+    ///
+    /// **Errors** [`PassportError`].
+    pub fn read(path: &Path) -> Result<Self, PassportError> {
+        let mut bytes = Vec::new();
+        let file = std::fs::File::open(path).map_err(PassportError::Io)?;
+        file.take(LONGEST + 1).read_to_end(&mut bytes).map_err(PassportError::Io)?;
+        if bytes.len() as u64 > LONGEST {
+            return Err(PassportError::TooLong);
+        }
+        Self::from_json(std::str::from_utf8(&bytes).map_err(|_| PassportError::Encoding)?)
+    }
+
     /// Reads a passport of major version 1.
     ///
     /// **Errors** [`PassportError`].
@@ -42,6 +61,12 @@ impl Passport {
 /// A passport that cannot be read.
 #[derive(Debug)]
 pub enum PassportError {
+    /// The operating system refused.
+    Io(std::io::Error),
+    /// More bytes than a passport may have.
+    TooLong,
+    /// Not UTF-8.
+    Encoding,
     /// Not JSON, or a field is of the wrong type.
     Json(serde_json::Error),
     /// Another schema or major version.
@@ -54,6 +79,15 @@ pub enum PassportError {
 impl std::fmt::Display for PassportError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
+            Self::Io(e) => write!(f, "{e}{}", crate::error::io_remedy(e)),
+            Self::TooLong => write!(
+                f,
+                "more than {} MiB; no passport is that long: name the passport.json that `tumble certify --out` wrote",
+                LONGEST >> 20
+            ),
+            Self::Encoding => f.write_str(
+                "not UTF-8 text; name the passport.json that `tumble certify --out` wrote",
+            ),
             Self::Json(e) => write!(f, "not a passport: {}", crate::error::visible(&e.to_string())),
             Self::Schema { seen } => write!(
                 f,
