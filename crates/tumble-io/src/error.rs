@@ -52,9 +52,17 @@ pub(crate) fn printable(text: &str) -> String {
 
 /// [`printable`], and cut where it is long.
 pub(crate) fn visible(text: &str) -> String {
-    const LONGEST: usize = 80;
-    let mut out: String = printable(text).chars().take(LONGEST).collect();
-    if text.chars().nth(LONGEST).is_some() {
+    cut(text, 80)
+}
+
+/// A sentence that holds text from outside: [`printable`], and cut where nobody reads on.
+fn sentence(text: &str) -> String {
+    cut(text, 600)
+}
+
+fn cut(text: &str, longest: usize) -> String {
+    let mut out: String = printable(text).chars().take(longest).collect();
+    if text.chars().nth(longest).is_some() {
         out.push('…');
     }
     out
@@ -63,7 +71,8 @@ pub(crate) fn visible(text: &str) -> String {
 /// A list for people: the first forty, and how many more there are.
 pub(crate) fn first_of(names: &[String]) -> String {
     const SHOWN: usize = 40;
-    let mut out = names[..names.len().min(SHOWN)].join(", ");
+    let shown: Vec<String> = names.iter().take(SHOWN).map(|n| cut(n, 82)).collect();
+    let mut out = shown.join(", ");
     if names.len() > SHOWN {
         out.push_str(&format!(", and {} more", names.len() - SHOWN));
     }
@@ -356,8 +365,8 @@ impl fmt::Display for Problem {
                 visible(first),
                 (*columns).max(1)
             ),
-            Self::HeaderUnit { unit, remedy } => write!(f, "the header says {unit}; {}", printable(remedy)),
-            Self::Advised { problem, advice } => write!(f, "{problem}. {}", printable(advice)),
+            Self::HeaderUnit { unit, remedy } => write!(f, "the header says {unit}; {}", sentence(remedy)),
+            Self::Advised { problem, advice } => write!(f, "{problem}. {}", sentence(advice)),
             Self::AnglesOfDwells { listed, found } => {
                 const SHOWN: usize = 80;
                 write!(
@@ -382,9 +391,9 @@ impl fmt::Display for Problem {
                 write!(
                     f,
                     "{}; the header has {}; {}",
-                    printable(what),
+                    sentence(what),
                     list(seen),
-                    printable(remedy)
+                    sentence(remedy)
                 )
             }
             Self::Fields { seen, expected, delimiter } => write!(
@@ -413,7 +422,7 @@ impl fmt::Display for Problem {
 
 /// A parser's message may have several lines; each is made visible.
 fn visible_lines(text: &str) -> String {
-    text.lines().map(visible).collect::<Vec<_>>().join("; ")
+    text.lines().take(12).map(visible).collect::<Vec<_>>().join("; ")
 }
 
 impl std::error::Error for ReadError {

@@ -199,8 +199,15 @@ fn line_and_column(text: &str, at: usize) -> (u64, usize) {
 /// The deserializer's message about an unknown key names the key and the known ones between backticks.
 fn problem(message: &str) -> Problem {
     let mut quoted = message.split('`').skip(1).step_by(2).map(str::to_owned);
-    match (message.starts_with("unknown field"), quoted.next()) {
-        (true, Some(key)) => Problem::unknown_key(&key, quoted.collect()),
+    match (message, quoted.next()) {
+        (m, Some(key)) if m.starts_with("unknown field") => {
+            Problem::unknown_key(&key, quoted.collect())
+        }
+        (m, Some(key)) if m.starts_with("missing field") => Problem::Toml {
+            message: format!(
+                "`{key}` is missing here: write it, or see what `tumble simulate` writes"
+            ),
+        },
         _ => Problem::Toml { message: message.to_owned() },
     }
 }

@@ -5,6 +5,8 @@ const PAPER_FIRST_DEG: i32 = -30;
 const PAPER_LAST_DEG: i32 = 29;
 /// Most angles of a plan: what an experiment's file may hold.
 const MOST_ANGLES: u32 = 10_000;
+/// No dial counts farther: a thousand turns.
+const FARTHEST_DEG: f64 = 360_000.0;
 
 /// A plan that is not understood.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -35,12 +37,14 @@ impl std::error::Error for PlanError {}
 /// assert_eq!(parse_plan("paper")?.len(), 60);
 /// assert!(parse_plan("-65:65").is_err());
 /// assert!(parse_plan("-65:65:4000000000").is_err());
+/// assert!(parse_plan("-1e308:1e308:3").is_err());
 /// # Ok::<(), tumble_core::simulate::PlanError>(())
 /// ```
 pub fn parse_plan(text: &str) -> Result<Vec<f64>, PlanError> {
     let wrong = |part: &str| PlanError { text: part.to_owned() };
     let number = |part: &str| {
-        part.trim().parse::<f64>().ok().filter(|v| v.is_finite()).ok_or_else(|| wrong(part))
+        let value = part.trim().parse::<f64>().ok();
+        value.filter(|v| v.abs() <= FARTHEST_DEG).ok_or_else(|| wrong(part))
     };
     if text.trim() == "paper" {
         return Ok((PAPER_FIRST_DEG..=PAPER_LAST_DEG).map(f64::from).collect());

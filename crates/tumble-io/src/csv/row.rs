@@ -86,6 +86,9 @@ const MISSING: &str = "fill in the cell or remove the row; missing = \"skip\" in
 /// No dial counts farther: a thousand turns.
 const FARTHEST_DIAL_DEG: f64 = 360_000.0;
 
+/// Nanoseconds since 1970 that are taken for seconds stay below; differences of such times are finite.
+const FARTHEST_TIME_S: f64 = 1e20;
+
 /// What to do about a code that is none.
 fn code_remedy(text: &[u8], format: CodeFormat) -> &'static str {
     let hex = CodeFormat { hexadecimal: true, bits: None };
@@ -179,7 +182,8 @@ impl Row<'_> {
     pub(super) fn time_s(&self, index: usize, dialect: &Dialect) -> Result<f64, ReadError> {
         let unit = dialect.time_unit.unwrap_or_default();
         let text = self.text(index);
-        unit.seconds(text, self.columns.decimal).ok_or_else(|| {
+        let possible = |t: &f64| t.abs() <= FARTHEST_TIME_S;
+        unit.seconds(text, self.columns.decimal).filter(possible).ok_or_else(|| {
             let remedy = match text {
                 [] => "fill in the empty cell, remove the row, or leave the time out of `columns`",
                 t if unit != TimeUnit::Date && date_s(t).is_some() => {

@@ -234,7 +234,18 @@ impl Reader<'_> {
         }
         let path = self.folder.join(relative);
         let io = |e| ReadError { place: Place::file(file), problem: Problem::Io(e) };
-        let real = path.canonicalize().map_err(io)?;
+        let real = path.canonicalize().map_err(|e| {
+            let is_link = path.symlink_metadata().is_ok_and(|m| m.is_symlink());
+            if is_link {
+                let (seen, remedy) =
+                    ("a link that leads nowhere", "copy the file itself into the folder");
+                return ReadError {
+                    place: Place::file(file),
+                    problem: Problem::Format { seen, remedy },
+                };
+            }
+            io(e)
+        })?;
         let root = self.folder.canonicalize().map_err(io)?;
         if real.starts_with(root) { Ok(path) } else { Err(outside()) }
     }

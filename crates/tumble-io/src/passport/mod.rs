@@ -50,6 +50,13 @@ impl Passport {
         serde_json::from_str(text).map_err(PassportError::Json)
     }
 
+    /// Whether all numbers are numbers: JSON has `null` for others, and it does not read again.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        let json = serde_json::to_string(self);
+        json.is_ok_and(|text| serde_json::from_str::<Self>(&text).is_ok_and(|read| read == *self))
+    }
+
     /// Writes it, indented, with a final newline. The same passport gives the same bytes.
     pub fn to_json(&self) -> Result<String, PassportError> {
         let mut text = serde_json::to_string_pretty(self).map_err(PassportError::Json)?;
