@@ -230,7 +230,7 @@ fn bombs_are_refused() {
 
 #[test]
 fn packed_files_that_are_damaged_are_named() {
-    let text = b"angle_deg,code\n-30,10\n-30,12\n30,-7\n".repeat(1);
+    let text = b"angle_deg,code\n-30,10\n-30,12\n30,-7\n".to_vec();
     let whole = gz(&text);
     let mut flipped = whole.clone();
     let checksum = flipped.len() - 6;
@@ -385,7 +385,7 @@ fn files_that_may_not_be_read_are_named() {
     let dir = experiment("run.csv");
     let run = dir.path().join("run.csv");
     fs::write(&run, "angle_deg,code\n0,1\n").unwrap();
-    fs::set_permissions(&run, fs::Permissions::from_mode(0)).unwrap();
+    fs::set_permissions(&run, fs::Permissions::from_mode(0o0)).unwrap();
     if File::open(&run).is_ok() {
         eprintln!("SKIPPED: whoever runs this may read everything");
         return;

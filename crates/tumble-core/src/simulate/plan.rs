@@ -17,10 +17,12 @@ pub struct PlanError {
 
 impl std::fmt::Display for PlanError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        // Whatever was typed, safe to print on a terminal.
+        let visible = |c: char| if c.is_control() { '\u{fffd}' } else { c };
+        let text: String = self.text.chars().take(80).map(visible).collect();
         write!(
             f,
-            "`{}` is no plan: write FIRST:LAST:COUNT (-65:65:60, at most {MOST_ANGLES}), a list of degrees (-65,0,65), or paper",
-            self.text
+            "`{text}` is no plan: write FIRST:LAST:COUNT (-65:65:60, at most {MOST_ANGLES}), a list of degrees (-65,0,65), or paper"
         )
     }
 }
@@ -37,6 +39,7 @@ impl std::error::Error for PlanError {}
 /// assert_eq!(parse_plan("paper")?.len(), 60);
 /// assert!(parse_plan("-65:65").is_err());
 /// assert!(parse_plan("-65:65:4000000000").is_err());
+/// assert!(!parse_plan("\u{1b}[2J").unwrap_err().to_string().contains('\u{1b}'));
 /// assert!(parse_plan("-1e308:1e308:3").is_err());
 /// # Ok::<(), tumble_core::simulate::PlanError>(())
 /// ```
