@@ -119,7 +119,7 @@ impl Timing {
             .values()
             .filter(|(count, sum)| sum / *count as f64 > GAP_STEPS * typical)
             .map(|(count, sum)| ((sum / typical).round() as u64).saturating_sub(*count))
-            .sum()
+            .fold(0, u64::saturating_add)
     }
 
     /// Samples that the clock shows as lost: [`Self::missing`], but for what jitter and bursts make of it.
@@ -142,10 +142,11 @@ impl Timing {
         let gap = if jitters { CLEAR_GAP.1 } else { CLEAR_GAP.0 };
         let (count, sum) = steps(gap, f64::INFINITY);
         let lost = ((sum / typical).round() as u64).saturating_sub(count);
-        let expected = stated_rate_hz.map(|rate| (span * rate).round() as u64 + 1);
+        let expected = stated_rate_hz.map(|rate| ((span * rate).round() as u64).saturating_add(1));
         let room = expected.map_or(u64::MAX, |n| n.saturating_sub(self.samples));
         // A rate that is stated twice too low would hide every gap.
-        let believed = expected.is_some_and(|n| n * 10 > self.samples * 9);
+        let believed =
+            expected.is_some_and(|n| n.saturating_mul(10) > self.samples.saturating_mul(9));
         match (lost > self.samples, believed) {
             (true, _) => 0,
             (false, true) => lost.min(room),

@@ -31,6 +31,8 @@ pub enum CertifyError {
     Read(ReadError),
     /// Could not be judged.
     Assess(AssessError),
+    /// Numbers of the result left the range of numbers: no passport could be read again.
+    NotFinite,
 }
 
 impl std::fmt::Display for CertifyError {
@@ -38,6 +40,10 @@ impl std::fmt::Display for CertifyError {
         match self {
             Self::Read(e) => e.fmt(f),
             Self::Assess(e) => e.fmt(f),
+            Self::NotFinite => f.write_str(
+                "the result holds numbers without bounds; no bench gives such input: look at nominal_scale, mean codes \
+                 and temperatures (`tumble check` shows what was read)",
+            ),
         }
     }
 }
@@ -61,11 +67,12 @@ pub fn certify_watched(
     let mut assessment =
         assess(&read.experiment, &options.estimate).map_err(CertifyError::Assess)?;
     assessment.findings.extend(read.findings.iter().cloned());
-    Ok(passport::build(
+    let passport = passport::build(
         &read,
         &assessment,
         &options.estimate,
         options.id.as_deref(),
         options.issued.as_deref(),
-    ))
+    );
+    if passport.is_finite() { Ok(passport) } else { Err(CertifyError::NotFinite) }
 }

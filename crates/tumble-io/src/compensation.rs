@@ -2,7 +2,7 @@
 
 use tumble_core::{Code, Compensation, Compensator, ConverterEnds, Quantizer, QuantizerOffset};
 
-use crate::passport::Passport;
+use crate::passport::{self, Passport};
 
 /// Whether coefficients may be used before reproducibility is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -12,6 +12,9 @@ pub enum Proof {
     /// Also passports that are indeterminate for want of runs.
     Waived,
 }
+
+/// Coefficients are far smaller, whatever the unit: the squares of what follows from them are finite.
+const LARGEST: f64 = 1e60;
 
 /// A passport that gives no coefficients.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,6 +37,11 @@ pub enum CompensationRefused {
         stated_m_s2: f64,
         /// What its coefficients give, m/s².
         computed_m_s2: f64,
+    },
+    /// A number that no calibration gives: it was edited or damaged.
+    Impossible {
+        /// The field.
+        field: &'static str,
     },
     /// A word that this version does not know.
     Unknown {
@@ -73,6 +81,10 @@ impl std::fmt::Display for CompensationRefused {
                 "its coefficients give {computed_m_s2} m/s² where its own example says {stated_m_s2} m/s²: \
                  edited or damaged; certify the experiment again"
             ),
+            Self::Impossible { field } => write!(
+                f,
+                "{field} is not possible: edited or damaged; certify the experiment again"
+            ),
             Self::Unknown { field, seen } => write!(
                 f,
                 "{field} `{}` is not known to this version; use the version of tumble that wrote the passport",
@@ -83,6 +95,26 @@ impl std::fmt::Display for CompensationRefused {
 }
 
 impl std::error::Error for CompensationRefused {}
+
+/// A field that is nothing that a calibration gives, where there is one.
+fn impossible(c: &passport::Compensation) -> Option<&'static str> {
+    let [[a, b], [b2, d]] = c.covariance;
+    // Rounding of what was written, no more; a variance that came out as zero is fine.
+    let symmetric = (b - b2).abs() <= 1e-9 * (a * d).abs().sqrt();
+    let covariance = a >= 0.0 && d >= 0.0 && b * b <= a * d * (1.0 + 1e-9) && symmetric;
+    let plausible = |v: f64| v.abs() < LARGEST;
+    match () {
+        () if !(plausible(c.scale_factor) && c.scale_factor > 0.0) => {
+            Some("compensation.scale_factor")
+        }
+        () if !plausible(c.bias) => Some("compensation.bias"),
+        () if !covariance || !plausible(a) || !plausible(d) => Some("compensation.covariance"),
+        () if c.reading_std_lsb.is_some_and(|s| s < 0.0 || !plausible(s)) => {
+            Some("compensation.reading_std_lsb")
+        }
+        () => None,
+    }
+}
 
 /// Coefficients of a passport.
 ///
@@ -115,6 +147,9 @@ pub fn compensator(passport: &Passport, proof: Proof) -> Result<Compensator, Com
         "none" => Quantizer::None,
         other => return Err(unknown("quantizer", other)),
     };
+    if let Some(field) = impossible(c) {
+        return Err(CompensationRefused::Impossible { field });
+    }
     let compensator = Compensator {
         coefficients: Compensation {
             scale_factor_m_s2_per_lsb: c.scale_factor,
@@ -137,5 +172,43 @@ pub fn compensator(passport: &Passport, proof: Proof) -> Result<Compensator, Com
         Ok(compensator)
     } else {
         Err(CompensationRefused::Inconsistent { stated_m_s2, computed_m_s2 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_that_no_calibration_gives_are_refused() {
+        let c = passport::Compensation {
+            scale_factor: 0.0077,
+            bias: 0.01,
+            quantizer_offset: "half_sign".into(),
+            valid_range_lsb: [-1000.0, 1000.0],
+            covariance: [[4e-12, 1e-9], [1e-9, 9e-6]],
+            reading_std_lsb: Some(1.2),
+            example: passport::Example { code: 0, acceleration_m_s2: 0.0 },
+        };
+        assert_eq!(impossible(&c), None);
+        for (field, wrong) in [
+            ("scale_factor", passport::Compensation { scale_factor: 1e308, ..c.clone() }),
+            ("scale_factor", passport::Compensation { scale_factor: -0.01, ..c.clone() }),
+            ("bias", passport::Compensation { bias: 1e300, ..c.clone() }),
+            (
+                "covariance",
+                passport::Compensation { covariance: [[-1.0, 0.0], [0.0, 1.0]], ..c.clone() },
+            ),
+            (
+                "covariance",
+                passport::Compensation { covariance: [[1.0, 2.0], [2.0, 1.0]], ..c.clone() },
+            ),
+            (
+                "reading_std_lsb",
+                passport::Compensation { reading_std_lsb: Some(-1.0), ..c.clone() },
+            ),
+        ] {
+            assert_eq!(impossible(&wrong), Some(format!("compensation.{field}").as_str()));
+        }
     }
 }

@@ -46,19 +46,35 @@ impl fmt::Display for Place {
 }
 
 /// Text from outside, safe to print on a terminal: control characters become visible.
-fn printable(text: &str) -> String {
+pub(crate) fn printable(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
 }
 
 /// [`printable`], and cut where it is long.
 pub(crate) fn visible(text: &str) -> String {
-    shortened(text, 80)
+    cut(text, 80)
 }
 
-fn shortened(text: &str, longest: usize) -> String {
+/// A sentence that holds text from outside: [`printable`], and cut where nobody reads on.
+fn sentence(text: &str) -> String {
+    cut(text, 600)
+}
+
+fn cut(text: &str, longest: usize) -> String {
     let mut out: String = printable(text).chars().take(longest).collect();
     if text.chars().nth(longest).is_some() {
         out.push('…');
+    }
+    out
+}
+
+/// A list for people: the first forty, and how many more there are.
+pub(crate) fn first_of(names: &[String]) -> String {
+    const SHOWN: usize = 40;
+    let shown: Vec<String> = names.iter().take(SHOWN).map(|n| cut(n, 82)).collect();
+    let mut out = shown.join(", ");
+    if names.len() > SHOWN {
+        out.push_str(&format!(", and {} more", names.len() - SHOWN));
     }
     out
 }
@@ -147,6 +163,28 @@ pub enum Problem {
     TooDense {
         /// Limit of unpacked over stored bytes.
         limit: u64,
+    },
+    /// A packed file that does not unpack.
+    Damaged {
+        /// gzip or zstd.
+        packing: &'static str,
+        /// What the decoder says.
+        message: String,
+    },
+    /// A document that is longer than any of its kind.
+    TooLong {
+        /// Limit in bytes.
+        limit: u64,
+    },
+    /// More dwells than a file may hold.
+    TooManyDwells {
+        /// Limit of dwells.
+        limit: usize,
+    },
+    /// More different codes, over all dwells of a file, than are kept.
+    TooManyCodes {
+        /// Limit of codes.
+        limit: usize,
     },
     /// The file was written to while it was read.
     Changed,
@@ -258,15 +296,35 @@ impl fmt::Display for ReadError {
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let list = |names: &[String]| {
-            names.iter().map(|n| format!("`{}`", visible(n))).collect::<Vec<_>>().join(", ")
+            let quoted: Vec<String> = names.iter().map(|n| format!("`{}`", visible(n))).collect();
+            first_of(&quoted)
         };
         match self {
             Self::Io(e) => f.write_str(&crate::advice(e)),
+            Self::Damaged { packing, message } => write!(
+                f,
+                "the {packing} file is damaged or was cut off ({}); copy it again, or unpack what is left and look at it",
+                visible(message)
+            ),
+            Self::TooLong { limit } => write!(
+                f,
+                "more than {} MiB; no such file is that long: is this another file?",
+                limit >> 20
+            ),
+            Self::TooManyDwells { limit } => write!(
+                f,
+                "more than {limit} dwells; dwells are consecutive rows of one angle, so check the angle column, or give \
+                 averages in several files"
+            ),
+            Self::TooManyCodes { limit } => write!(
+                f,
+                "more than {limit} different codes in the dwells of one file; split the file into runs, or give averages"
+            ),
             Self::NoExperiment { folder } => write!(
                 f,
                 "no experiment.toml in {}; an experiment is a folder with experiment.toml and its run files \
                  (`tumble simulate OUT --preset paper-3` writes one to look at)",
-                folder.display()
+                visible(&folder.display().to_string())
             ),
             Self::Toml { message } => write!(f, "{}", visible_lines(message)),
             Self::UnknownKey { key, nearest, known } => {
@@ -325,8 +383,8 @@ impl fmt::Display for Problem {
                 visible(first),
                 (*columns).max(1)
             ),
-            Self::HeaderUnit { unit, remedy } => write!(f, "the header says {unit}; {}", printable(remedy)),
-            Self::Advised { problem, advice } => write!(f, "{problem}. {}", printable(advice)),
+            Self::HeaderUnit { unit, remedy } => write!(f, "the header says {unit}; {}", sentence(remedy)),
+            Self::Advised { problem, advice } => write!(f, "{problem}. {}", sentence(advice)),
             Self::AnglesOfDwells { listed, found } => {
                 const SHOWN: usize = 80;
                 write!(
@@ -354,9 +412,9 @@ impl fmt::Display for Problem {
                 write!(
                     f,
                     "{}; the header has {}; {}",
-                    printable(what),
+                    sentence(what),
                     list(seen),
-                    printable(remedy)
+                    sentence(remedy)
                 )
             }
             Self::Fields { seen, expected, delimiter, text, numbers } => write!(
@@ -392,7 +450,7 @@ impl fmt::Display for Problem {
 
 /// A parser's message and its remedy have several lines; each is made visible.
 fn visible_lines(text: &str) -> String {
-    text.lines().map(|line| shortened(line, 240)).collect::<Vec<_>>().join("; ")
+    text.lines().take(12).map(|line| cut(line, 240)).collect::<Vec<_>>().join("; ")
 }
 
 impl std::error::Error for ReadError {
@@ -401,5 +459,17 @@ impl std::error::Error for ReadError {
             Problem::Io(e) => Some(e),
             _ => None,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_end() {
+        let names: Vec<String> = (0..1000).map(|i| i.to_string()).collect();
+        assert!(first_of(&names).ends_with("38, 39, and 960 more"), "{}", first_of(&names));
+        assert_eq!(first_of(&names[..2]), "0, 1");
     }
 }

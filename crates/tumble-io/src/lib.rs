@@ -14,6 +14,8 @@ mod error;
 mod experiment_file;
 mod explained;
 mod folder;
+#[doc(hidden)]
+pub mod fuzzing;
 mod init;
 mod output;
 pub mod passport;

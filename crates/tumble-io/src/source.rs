@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use flate2::read::MultiGzDecoder;
 
@@ -16,6 +17,35 @@ const UNPACKED_LIMIT: u64 = 4 << 30;
 const RATIO_FROM: u64 = 64 << 20;
 /// Records of a converter pack five to thirty times; a record of one row repeated, two hundred times.
 const RATIO_LIMIT: u64 = 500;
+
+/// Longest experiment.toml. A run has some hundred bytes.
+pub(crate) const DOCUMENT_LIMIT: u64 = 4 << 20;
+
+/// A document as a whole: a regular file, and no longer than a limit.
+pub(crate) fn read_document(path: &Path, shown_as: &str, limit: u64) -> Result<Vec<u8>, ReadError> {
+    let fail = |problem| ReadError { place: Place::file(shown_as), problem };
+    let length = regular(path, "name a folder with an experiment.toml").map_err(fail)?;
+    let mut bytes = Vec::new();
+    if length <= limit {
+        // It may have grown since.
+        let file = File::open(path).map_err(|e| fail(Problem::Io(e)))?;
+        file.take(limit + 1).read_to_end(&mut bytes).map_err(|e| fail(Problem::Io(e)))?;
+    }
+    if length > limit || bytes.len() as u64 > limit {
+        return Err(fail(Problem::TooLong { limit }));
+    }
+    Ok(bytes)
+}
+
+/// Length of a regular file. It is looked at before it is opened: to open a pipe is to wait for its writer.
+fn regular(path: &Path, remedy: &'static str) -> Result<u64, Problem> {
+    let kind = std::fs::metadata(path).map_err(Problem::Io)?;
+    if kind.is_file() {
+        return Ok(kind.len());
+    }
+    let seen = if kind.is_dir() { "a folder, not a file" } else { "no regular file" };
+    Err(Problem::Format { seen, remedy })
+}
 
 /// Told how far the reading of files has come.
 pub trait Watch: Sync + std::fmt::Debug {
@@ -44,6 +74,8 @@ pub(crate) struct Source<'w> {
     shown_as: String,
     /// Stored bytes when it was opened. No more are read, whatever is added meanwhile.
     length: u64,
+    /// When it was written to last, at that time.
+    written: Option<SystemTime>,
     unpacked: u64,
     watch: &'w dyn Watch,
 }
@@ -52,16 +84,10 @@ impl Source<'static> {
     /// Opens a file and looks at its first bytes.
     pub(crate) fn open(path: &Path, shown_as: &str) -> Result<Self, ReadError> {
         let fail = |problem| ReadError { place: Place::file(shown_as), problem };
-        // Looked at before it is opened: to open a pipe is to wait for its writer.
-        let kind = std::fs::metadata(path).map_err(|e| fail(Problem::Io(e)))?;
-        if !kind.is_file() {
-            return Err(fail(Problem::Format {
-                seen: if kind.is_dir() { "a folder, not a file" } else { "no regular file" },
-                remedy: "name a CSV file",
-            }));
-        }
+        regular(path, "name a CSV file").map_err(fail)?;
         let file = File::open(path).map_err(|e| fail(Problem::Io(e)))?;
-        let length = file.metadata().map_err(|e| fail(Problem::Io(e)))?.len();
+        let opened = file.metadata().map_err(|e| fail(Problem::Io(e)))?;
+        let (length, written) = (opened.len(), opened.modified().ok());
         let mut reader = DigestingReader::new(file.take(length));
         let mut head = vec![0u8; 4];
         let mut got = 0;
@@ -105,6 +131,7 @@ impl Source<'static> {
             path: path.to_path_buf(),
             shown_as: shown_as.to_owned(),
             length,
+            written,
             unpacked: 0,
             watch: &(),
         })
@@ -140,11 +167,19 @@ impl<'w> Source<'w> {
         }
     }
 
+    /// Whether the file was written to since it was opened.
+    pub(crate) fn changed(&self) -> bool {
+        std::fs::metadata(&self.path).is_ok_and(|now| {
+            now.len() != self.length
+                || (self.written.is_some() && now.modified().ok() != self.written)
+        })
+    }
+
     /// Digest of the file as it is stored.
     ///
     /// **Errors** where the file was changed while it was read: what was read is then no record of anything.
     pub(crate) fn finish(self) -> io::Result<String> {
-        let now = std::fs::metadata(&self.path)?.len();
+        let changed = self.changed();
         let (length, input) = (
             self.length,
             match self.packing {
@@ -154,7 +189,7 @@ impl<'w> Source<'w> {
             },
         );
         let (digest, read) = input.into_inner().1.finish()?;
-        if now != length || read != length {
+        if changed || read != length {
             return Err(io::Error::other(Stop::Changed));
         }
         Ok(digest)
@@ -166,17 +201,33 @@ impl<'w> Source<'w> {
             Some(Stop::TooLarge) => Problem::TooLarge { limit: UNPACKED_LIMIT },
             Some(Stop::TooDense) => Problem::TooDense { limit: RATIO_LIMIT },
             Some(Stop::Changed) => Problem::Changed,
+            Some(Stop::Damaged(packing, message)) => {
+                Problem::Damaged { packing, message: message.clone() }
+            }
             None => Problem::Io(e),
         }
     }
 }
 
 /// Why reading was stopped.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 enum Stop {
     TooLarge,
     TooDense,
     Changed,
+    /// What packs it, and what the decoder says.
+    Damaged(&'static str, String),
+}
+
+/// What a decoder says of its input, apart from what the operating system says.
+fn damaged(packing: &'static str) -> impl Fn(io::Error) -> io::Error {
+    use io::ErrorKind::{InvalidData, InvalidInput, UnexpectedEof};
+    move |e| match e.kind() {
+        InvalidData | InvalidInput | UnexpectedEof => {
+            io::Error::new(e.kind(), Stop::Damaged(packing, e.to_string()))
+        }
+        _ => e,
+    }
 }
 
 impl std::fmt::Display for Stop {
@@ -191,8 +242,8 @@ impl Read for Source<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let n = match &mut self.packing {
             Packing::Plain(input) => input.read(buffer)?,
-            Packing::Gzip(decoder) => decoder.read(buffer)?,
-            Packing::Zst(decoder) => decoder.read(buffer)?,
+            Packing::Gzip(decoder) => decoder.read(buffer).map_err(damaged("gzip"))?,
+            Packing::Zst(decoder) => decoder.read(buffer).map_err(damaged("zstd"))?,
         };
         let stored = self.digesting().taken();
         self.watch.progress(&self.shown_as, stored, self.length);

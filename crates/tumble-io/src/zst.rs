@@ -8,6 +8,10 @@ use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
 /// Largest window that is given room: what `zstd --ultra -22` uses.
 const WINDOW_LIMIT: u64 = 128 << 20;
 
+/// Blocks that may give nothing. A largest window that is filled line by line has a million of them; two gigabytes of
+/// zeros behind the mark of a zstd file are seven hundred millions.
+const MOST_BLOCKS: u32 = 1 << 22;
+
 /// Unpacks a stream of zstd frames.
 pub(crate) struct ZstReader<R> {
     decoder: FrameDecoder,
@@ -52,7 +56,7 @@ impl<R: Read> ZstReader<R> {
 }
 
 fn broken(e: impl std::fmt::Display) -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidData, format!("the zstd file is damaged: {e}"))
+    io::Error::new(io::ErrorKind::InvalidData, e.to_string())
 }
 
 impl<R: Read> Read for ZstReader<R> {
@@ -61,7 +65,12 @@ impl<R: Read> Read for ZstReader<R> {
             if !self.in_frame && !self.next_frame()? {
                 return Ok(0);
             }
+            let mut blocks = 0;
             while self.decoder.can_collect() == 0 && !self.decoder.is_finished() {
+                blocks += 1;
+                if blocks > MOST_BLOCKS {
+                    return Err(broken("millions of blocks with nothing in them"));
+                }
                 self.decoder
                     .decode_blocks(&mut self.source, BlockDecodingStrategy::UptoBlocks(1))
                     .map_err(broken)?;

@@ -40,13 +40,21 @@ impl Exit {
     /// Input that is missing or wrong is usage; input that breaks while it is read is a failure.
     pub(crate) fn of_reading(error: &ReadError) -> Self {
         use std::io::ErrorKind::{
-            InvalidData, InvalidInput, NotFound, PermissionDenied, UnexpectedEof,
+            InvalidData, InvalidFilename, InvalidInput, IsADirectory, NotADirectory, NotFound,
+            PermissionDenied, UnexpectedEof,
         };
         match &error.problem {
             Problem::Io(e)
                 if !matches!(
                     e.kind(),
-                    NotFound | PermissionDenied | InvalidData | InvalidInput | UnexpectedEof
+                    NotFound
+                        | PermissionDenied
+                        | InvalidData
+                        | InvalidFilename
+                        | InvalidInput
+                        | IsADirectory
+                        | NotADirectory
+                        | UnexpectedEof
                 ) =>
             {
                 Self::Failure

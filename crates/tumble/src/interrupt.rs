@@ -1,17 +1,19 @@
 //! Ctrl-C: at once, except while a result is being written; then after the clean-up.
 
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::exit::Exit;
 
-static WRITING: AtomicBool = AtomicBool::new(false);
+/// Held while a result is being written. The handler ends the process with it in its hand: nothing is begun meanwhile.
+static WRITING: Mutex<()> = Mutex::new(());
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 /// Takes over Ctrl-C. Where that is not possible the default (immediate end) stays.
 pub(crate) fn install() {
     let _ = ctrlc::set_handler(|| {
         INTERRUPTED.store(true, Ordering::SeqCst);
-        if !WRITING.load(Ordering::SeqCst) {
+        if let Ok(_nothing_is_written) = WRITING.try_lock() {
             std::process::exit(i32::from(Exit::Interrupted.code()));
         }
     });
@@ -24,8 +26,6 @@ pub(crate) fn interrupted() -> bool {
 
 /// Runs what must not be cut in half.
 pub(crate) fn while_writing<T>(write: impl FnOnce() -> T) -> T {
-    WRITING.store(true, Ordering::SeqCst);
-    let result = write();
-    WRITING.store(false, Ordering::SeqCst);
-    result
+    let _writing = WRITING.lock();
+    write()
 }

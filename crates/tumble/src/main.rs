@@ -23,5 +23,6 @@ fn main() -> std::process::ExitCode {
         cli::Command::Man(a) => commands::man::run(&a),
         cli::Command::Catalogue(a) => commands::catalogue::run(&a),
     };
-    code.into()
+    // What was being written is whole; it was asked to stop all the same.
+    if interrupt::interrupted() { exit::Exit::Interrupted.into() } else { code.into() }
 }

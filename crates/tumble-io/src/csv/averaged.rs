@@ -7,6 +7,7 @@ use tumble_core::{Dial, Readings, Record};
 use super::header::Columns;
 use super::lines::Lines;
 use super::number::{integer, trimmed};
+use super::raw::too_many;
 use super::row::{FieldBuffer, Row};
 use super::run_file::{Discard, Dwell, RunFileOptions};
 use crate::error::{Place, Problem, ReadError};
@@ -48,6 +49,9 @@ pub(super) fn read<R: Read>(
         row.check_width()?;
         if filters.iter().any(|(i, text)| row.text(*i) != text.as_bytes()) {
             continue;
+        }
+        if let Some(problem) = too_many(dwells.len(), 0) {
+            return Err(ReadError { place: row.place(), problem });
         }
         let written = trimmed(row.fields.get(samples));
         // `1.000` may be one or a thousand: a count has no mark.

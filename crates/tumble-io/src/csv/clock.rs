@@ -76,7 +76,7 @@ pub(crate) fn date_s(field: &[u8]) -> Option<f64> {
     }
     let text = std::str::from_utf8(field).ok()?.replace(',', ".");
     if let Ok(instant) = text.parse::<Timestamp>() {
-        return Some(instant.as_nanosecond() as f64 * 1e-9);
+        return Some(since_1970(instant));
     }
     let civil = text
         .parse::<DateTime>()
@@ -87,11 +87,16 @@ pub(crate) fn date_s(field: &[u8]) -> Option<f64> {
         .or_else(|| DateTime::strptime("%Y/%m/%d %H:%M:%S%.f", &text).ok());
     if let Some(civil) = civil {
         let instant = Offset::UTC.to_timestamp(civil).ok()?;
-        return Some(instant.as_nanosecond() as f64 * 1e-9);
+        return Some(since_1970(instant));
     }
     let time = text.parse::<Time>().ok().or_else(|| Time::strptime("%H:%M:%S%.f", &text).ok())?;
     let nanoseconds = time.since(Time::midnight()).ok()?.total(jiff::Unit::Nanosecond).ok()?;
-    Some(nanoseconds * 1e-9)
+    Some(nanoseconds / 1e9)
+}
+
+/// Whole seconds stay whole.
+fn since_1970(instant: Timestamp) -> f64 {
+    instant.as_second() as f64 + f64::from(instant.subsec_nanosecond()) / 1e9
 }
 
 #[cfg(test)]
@@ -118,6 +123,8 @@ mod tests {
         }
         assert!((parsed("2026-11-20T10:15:30.25").unwrap() - base - 0.25).abs() < 1e-6);
         assert_eq!(parsed("10:15:30.5"), Some(36_930.5));
+        // Nanoseconds times 1e-9 gave 3661.0000000000005.
+        assert_eq!(parsed("01:01:01"), Some(3661.0));
         for wrong in
             ["", "11/20/2026 10:15", "2026-13-01T00:00:00", "25:00:00", "2026-11-20", "1.5"]
         {

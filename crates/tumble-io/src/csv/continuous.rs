@@ -17,7 +17,7 @@ struct Kept {
     line: u64,
     reading: Value,
     time_s: Option<f64>,
-    temperature: Option<i128>,
+    temperature: Option<i64>,
 }
 
 /// Cuts a continuous record into dwells. `angles_deg`: the dial at each of them; `nan` leaves one out.
@@ -98,7 +98,7 @@ pub(super) fn read<R: Read>(
                 dwell.timing().record(t, row.line);
             }
             if let Some(steps) = row.temperature {
-                dwell.temperature.record(steps);
+                dwell.temperature.record(i128::from(steps));
             }
         }
         dwells.push(dwell.into_dwell());

@@ -218,7 +218,7 @@ impl Columns {
     }
 
     /// The error for columns that must be there, with the likeliest headers as a proposal.
-    fn missing(&self, known: &[&str], place: &Place) -> ReadError {
+    pub(crate) fn missing(&self, known: &[&str], place: &Place) -> ReadError {
         let mapped: Vec<String> = known
             .iter()
             .map(|k| format!("{k} = \"{}\"", self.likeliest(k).unwrap_or("Your Header")))

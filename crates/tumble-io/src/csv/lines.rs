@@ -138,7 +138,10 @@ impl<R: Read> Lines<R> {
     }
 
     fn fill(&mut self) -> Result<(), ReadError> {
-        self.buffer.copy_within(self.start..self.end, 0);
+        // A long line that comes in small pieces stays where it is.
+        if self.start > 0 {
+            self.buffer.copy_within(self.start..self.end, 0);
+        }
         (self.start, self.end) = (0, self.end - self.start);
         let here = |problem| ReadError {
             place: Place::line(self.shown_as.as_str(), self.number + 1),

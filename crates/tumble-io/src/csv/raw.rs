@@ -18,8 +18,12 @@ use crate::error::{Place, Problem, ReadError};
 const DISTINCT_LIMIT: usize = 1 << 20;
 /// Samples after which the number of different codes is looked at.
 const DISTINCT_CHECK: u64 = 1 << 16;
-/// Samples of one dwell that are kept to look for its settled stretch: a day at 50 Hz.
-pub(super) const KEPT_LIMIT: usize = 1 << 23;
+/// Dwells of one file: a table that is turned by motor has some thousand; more is a column that is no angle.
+pub(super) const MOST_DWELLS: usize = 10_000;
+/// Different codes over all dwells of a file. Sixty dwells of 100 000 different codes each stay below.
+const MOST_CODES: usize = 1 << 23;
+/// Samples that are kept to look for where the sensor stood still: more than a day at 50 Hz, and 16 to 56 bytes each.
+pub(super) const KEPT_LIMIT: usize = 5_000_000;
 
 /// Indices of the columns of a raw file.
 pub(super) struct Indices {
@@ -37,15 +41,15 @@ pub(super) struct Sample {
     /// `None`: the row holds no reading, and those are to be left out.
     pub(super) reading: Option<Value>,
     pub(super) time_s: Option<f64>,
-    pub(super) temperature: Option<i128>,
+    pub(super) temperature: Option<i64>,
 }
 
 /// One reading, exactly.
 #[derive(Clone, Copy)]
 pub(super) enum Value {
     Code(i32),
-    /// In [`ValueMoments::RESOLUTION`].
-    Steps(i128),
+    /// In [`ValueMoments::RESOLUTION`]; up to [`ValueMoments::LIMIT`] they fit.
+    Steps(i64),
 }
 
 impl Value {
@@ -122,20 +126,20 @@ impl Indices {
         if options.skips_missing() && says_missing(row.fields.get(self.reading)) {
             return Ok(Sample { reading: None, time_s, temperature: None });
         }
-        let reading =
-            if options.quantizer == Quantizer::None {
-                let value = row.real(self.reading, "a number")?;
-                Value::Steps(ValueMoments::steps(value).map_err(|_| {
-                    row.wrong(self.reading, "a reading below 1e6", "use a larger unit")
-                })?)
-            } else {
-                Value::Code(row.code(self.reading, options.dialect.codes)?)
-            };
+        let reading = if options.quantizer == Quantizer::None {
+            let value = row.real(self.reading, "a number")?;
+            let steps = ValueMoments::steps(value).ok().and_then(|s| i64::try_from(s).ok());
+            Value::Steps(steps.ok_or_else(|| {
+                row.wrong(self.reading, "a reading below 1e6", "use a larger unit")
+            })?)
+        } else {
+            Value::Code(row.code(self.reading, options.dialect.codes)?)
+        };
         let temperature = match self.temperature {
             Some(i) => {
                 let t = row.real(i, "a temperature in °C")?;
-                let steps = ValueMoments::steps(t);
-                Some(steps.map_err(|_| row.wrong(i, "a temperature in °C", "mend the row"))?)
+                let steps = ValueMoments::steps(t).ok().and_then(|s| i64::try_from(s).ok());
+                Some(steps.ok_or_else(|| row.wrong(i, "a temperature in °C", "mend the row"))?)
             }
             None => None,
         };
@@ -173,7 +177,7 @@ pub(super) fn read<R: Read>(
     let at = Indices::of(header, columns, options)?;
     let mut dwells = Vec::new();
     let mut open: Option<Open> = None;
-    let mut zeros = ZeroRows::default();
+    let (mut zeros, mut codes) = (ZeroRows::default(), 0);
     let mut fields_of_line = FieldBuffer::default();
     while let Some((number, line)) = lines.next_data()? {
         let fields = fields_of_line.split(line, columns.delimiter);
@@ -215,6 +219,10 @@ pub(super) fn read<R: Read>(
                 };
                 if let Some(done) = open.replace(next) {
                     dwells.push(done.gathered.close(options)?);
+                    codes += dwells.last().map_or(0, different_codes);
+                    if let Some(problem) = too_many(dwells.len(), codes) {
+                        return Err(ReadError { place: row.place(), problem });
+                    }
                 }
             }
         }
@@ -229,6 +237,22 @@ pub(super) fn read<R: Read>(
         dwells.push(done.gathered.close(options)?);
     }
     Ok(dwells)
+}
+
+/// What is wrong with so many dwells that hold so many different codes.
+pub(super) fn too_many(dwells: usize, codes: usize) -> Option<Problem> {
+    match () {
+        () if dwells >= MOST_DWELLS => Some(Problem::TooManyDwells { limit: MOST_DWELLS }),
+        () if codes > MOST_CODES => Some(Problem::TooManyCodes { limit: MOST_CODES }),
+        () => None,
+    }
+}
+
+fn different_codes(dwell: &Dwell) -> usize {
+    match &dwell.readings {
+        Readings::Codes { histogram, .. } => histogram.distinct(),
+        _ => 0,
+    }
 }
 
 /// Rows at the end of a file in which every number is zero: what loggers leave that write files of a fixed length.
@@ -332,7 +356,7 @@ impl Gathered {
             self.check_distinct(row)?;
         }
         if let Some(steps) = sample.temperature {
-            self.temperature.record(steps);
+            self.temperature.record(i128::from(steps));
         }
         Ok(())
     }
@@ -349,6 +373,7 @@ impl Gathered {
                 self.last = Some(code);
             }
             (Readings::Values { moments, blocks }, Value::Steps(steps)) => {
+                let steps = i128::from(steps);
                 moments.record(steps);
                 blocks.record(steps);
             }

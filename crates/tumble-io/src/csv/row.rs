@@ -88,6 +88,12 @@ const BOTH_MARKS: &str = "where decimal commas stand in the same column, 1.000 m
      column with one decimal mark, and without thousands marks";
 const MISSING: &str = "fill in the cell or remove the row; missing = \"skip\" in [csv] leaves rows without a reading out";
 
+/// No dial counts farther: a thousand turns.
+const FARTHEST_DIAL_DEG: f64 = 360_000.0;
+
+/// Nanoseconds since 1970 that are taken for seconds stay below; differences of such times are finite.
+const FARTHEST_TIME_S: f64 = 1e20;
+
 /// What to do about a code that is none.
 fn code_remedy(text: &[u8], format: CodeFormat) -> &'static str {
     let hex = CodeFormat { hexadecimal: true, bits: None };
@@ -168,7 +174,8 @@ impl Row<'_> {
         let unit = dialect.angle_unit.unwrap_or_default();
         let text = self.text(index);
         self.check_marks(index)?;
-        unit.value(text, self.columns.decimal).ok_or_else(|| {
+        let possible = |v: &f64| (v * unit.in_deg()).abs() <= FARTHEST_DIAL_DEG;
+        unit.value(text, self.columns.decimal).filter(possible).ok_or_else(|| {
             let remedy = match text {
                 t if t == self.columns.name(index).as_bytes() => {
                     "it is the header once more: remove the row"
@@ -192,7 +199,8 @@ impl Row<'_> {
         if unit != TimeUnit::Date {
             self.check_marks(index)?;
         }
-        unit.seconds(text, self.columns.decimal).ok_or_else(|| {
+        let possible = |t: &f64| t.abs() <= FARTHEST_TIME_S;
+        unit.seconds(text, self.columns.decimal).filter(possible).ok_or_else(|| {
             let remedy = match text {
                 [] => "fill in the empty cell, remove the row, or leave the time out of `columns`",
                 t if unit != TimeUnit::Date && date_s(t).is_some() => {

@@ -90,15 +90,21 @@ pub(crate) fn read_run_file(
     let mut lines = Lines::new(source, shown_as).with_comment(&options.dialect.comment);
     let read = read_lines(&mut lines, options);
     // What goes wrong at the header is often a header that stands elsewhere: a look at the file may tell where.
-    let (dwells, ignored) = read.map_err(|e| sketch::with_advice(e, path, options))?;
-    let sha256 = lines
-        .into_inner()
+    let source = lines.into_inner();
+    let (dwells, ignored) = match read {
+        Ok(read) => read,
+        // A row that was only half written is no row that needs mending.
+        Err(e) if source.changed() => return Err(ReadError { problem: Problem::Changed, ..e }),
+        Err(e) => return Err(sketch::with_advice(e, path, options)),
+    };
+    let sha256 = source
         .finish()
         .map_err(|e| ReadError { place: Place::file(shown_as), problem: Source::problem(e) })?;
     Ok(RunFile { dwells, ignored, sha256 })
 }
 
-fn read_lines<R: std::io::Read>(
+/// Reads header and rows.
+pub(crate) fn read_lines<R: std::io::Read>(
     lines: &mut Lines<R>,
     options: &RunFileOptions<'_>,
 ) -> Result<(Vec<Dwell>, Vec<String>), ReadError> {

@@ -63,6 +63,10 @@ pub(crate) fn sketch_file(path: &Path, shown_as: &str) -> Result<Option<Sketch>,
     source
         .read_to_end(&mut head)
         .map_err(|e| ReadError { place: Place::file(shown_as), problem: Source::problem(e) })?;
+    if head.contains(&0) {
+        let problem = Problem::Format { seen: "binary data", remedy: "give a CSV file" };
+        return Err(ReadError { place: Place::file(shown_as), problem });
+    }
     // The last line may be cut.
     if head.len() as u64 == LOOK {
         let end = memchr::memrchr(b'\n', &head).map_or(head.len(), |i| i + 1);

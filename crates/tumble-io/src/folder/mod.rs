@@ -2,6 +2,7 @@
 
 mod settings;
 
+use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
 use std::thread;
 
@@ -10,18 +11,20 @@ use tumble_core::{
     Sensor, VerticalPair,
 };
 
-use crate::advice::with_similar_names;
 use crate::catalogue::{CATALOGUE_FILE, Catalogue, UserCatalogue};
 use crate::csv::{Dialect, Discard, Dwell, Mapping, RunFileOptions, read_run_file};
-use crate::error::{Place, Problem, ReadError, nearest};
+use crate::error::{Place, Problem, ReadError, first_of, nearest};
 use crate::experiment_file::{
     self, BenchTable, CsvTable, DiscardValue, ExperimentFile, Orientation, RunTable, ScaleTable,
 };
-use crate::source::Watch;
+use crate::source::{DOCUMENT_LIMIT, Watch, read_document};
 use settings::{bench, dialect, discard, mapping, missing, output, targets, value};
 
 /// Name of the file that makes a folder an experiment.
 pub(crate) const EXPERIMENT_FILE: &str = "experiment.toml";
+
+/// Most runs of an experiment: three power-ups a day for a year.
+const MOST_RUNS: usize = 1000;
 
 /// One input with its digest.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -73,12 +76,20 @@ pub fn read_experiment_with(
     watch: &dyn Watch,
 ) -> Result<ExperimentFolder, ReadError> {
     let toml_path = folder.join(EXPERIMENT_FILE);
-    let bytes = std::fs::read(&toml_path).map_err(|e| match e.kind() {
-        std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory => ReadError {
-            place: Place::file(folder.display().to_string()),
-            problem: Problem::NoExperiment { folder: folder.to_path_buf() },
-        },
-        _ => ReadError { place: Place::file(EXPERIMENT_FILE), problem: Problem::Io(e) },
+    let read = read_document(&toml_path, EXPERIMENT_FILE, DOCUMENT_LIMIT);
+    let bytes = read.map_err(|e| match &e.problem {
+        Problem::Io(io)
+            if matches!(
+                io.kind(),
+                std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory
+            ) =>
+        {
+            ReadError {
+                place: Place::file(folder.display().to_string()),
+                problem: Problem::NoExperiment { folder: folder.to_path_buf() },
+            }
+        }
+        _ => e,
     })?;
     read_described(folder, &bytes, catalogue, watch)
 }
@@ -186,6 +197,14 @@ fn read_parsed(
 
 /// Runs are named by `name`, else after their file, else by their number; names are unique.
 fn run_names(runs: &[RunTable]) -> Result<Vec<String>, ReadError> {
+    if runs.len() > MOST_RUNS {
+        let given = format!("{} tables", runs.len());
+        return Err(value(
+            "[[run]]",
+            given,
+            &format!("at most {MOST_RUNS} runs in one experiment"),
+        ));
+    }
     let names: Vec<String> = runs
         .iter()
         .enumerate()
@@ -195,13 +214,12 @@ fn run_names(runs: &[RunTable]) -> Result<Vec<String>, ReadError> {
             (None, None) => format!("run-{}", i + 1),
         })
         .collect();
-    for (i, name) in names.iter().enumerate() {
-        if names[..i].contains(name) {
-            return Err(ReadError {
-                place: Place::file(EXPERIMENT_FILE),
-                problem: Problem::RunName { name: name.clone(), known: names },
-            });
-        }
+    let mut seen = BTreeSet::new();
+    if let Some(twice) = names.iter().find(|name| !seen.insert(*name)) {
+        return Err(ReadError {
+            place: Place::file(EXPERIMENT_FILE),
+            problem: Problem::RunName { name: twice.clone(), known: names.clone() },
+        });
     }
     Ok(names)
 }
@@ -256,16 +274,21 @@ impl Reader<'_> {
             return Err(outside());
         }
         let path = self.folder.join(relative);
-        let io = |e| ReadError {
-            place: Place::file(file),
-            problem: Problem::Io(with_similar_names(e, &path)),
-        };
-        let real = path.canonicalize().map_err(|e| match e.kind() {
-            std::io::ErrorKind::NotFound => ReadError {
-                place: Place::file(EXPERIMENT_FILE),
-                problem: Problem::NoFile { path: file.to_owned(), nearest: neighbour(&path) },
-            },
-            _ => io(e),
+        let io = |e| ReadError { place: Place::file(file), problem: Problem::Io(e) };
+        let real = path.canonicalize().map_err(|e| {
+            if path.symlink_metadata().is_ok_and(|m| m.is_symlink()) {
+                let (seen, remedy) =
+                    ("a link that leads nowhere", "copy the file itself into the folder");
+                let problem = Problem::Format { seen, remedy };
+                return ReadError { place: Place::file(file), problem };
+            }
+            match e.kind() {
+                std::io::ErrorKind::NotFound => ReadError {
+                    place: Place::file(EXPERIMENT_FILE),
+                    problem: Problem::NoFile { path: file.to_owned(), nearest: neighbour(&path) },
+                },
+                _ => io(e),
+            }
         })?;
         let root = self.folder.canonicalize().map_err(io)?;
         if real.starts_with(root) { Ok(path) } else { Err(outside()) }
@@ -335,6 +358,12 @@ impl Reader<'_> {
         }
         if asked.angles_deg.is_some() && files.len() != 1 {
             return Err(value("[[run]] angles_deg", "given beside files", "one of the two"));
+        }
+        if let Some(angle) = files.iter().filter_map(|f| f.1).find(|a| !a.is_finite()) {
+            return Err(value("[[run]] files angle_deg", angle, "the dial's angle in degrees"));
+        }
+        if let Some(t) = table.temperature_degc.filter(|t| !t.is_finite()) {
+            return Err(value("[[run]] temperature_degc", t, "a temperature in °C"));
         }
         for (file, fixed_angle_deg) in files {
             let options = self.options(&asked, fixed_angle_deg);
@@ -550,7 +579,7 @@ fn ignored_columns(file: &str, columns: &[String]) -> Finding {
     Finding {
         kind: FindingKind::IgnoredColumns,
         place: file.to_owned(),
-        observed: columns.join(", "),
+        observed: first_of(columns),
         limit: "angle_deg, code, t_s, temperature_degc, position".into(),
         remedy: "if one of them holds something that matters, name it in `columns` of its [[run]]"
             .into(),

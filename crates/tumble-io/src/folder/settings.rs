@@ -45,6 +45,9 @@ fn positive(key: &str, given: Option<f64>, expected: &str) -> Result<Option<f64>
     }
 }
 
+/// Nominal scale factors of anything: 32 bits over 0.1 g have 5e-10 m/s², a reading in kV some 1e5.
+const SCALES: std::ops::RangeInclusive<f64> = 1e-15..=1e15;
+
 pub(super) fn output(table: &OutputTable) -> Result<Output, ReadError> {
     let quantizer = match table.quantizer {
         QuantizerName::Truncate => Quantizer::Truncate,
@@ -73,14 +76,14 @@ pub(super) fn output(table: &OutputTable) -> Result<Output, ReadError> {
         return Err(value("[output] max_code", hi, "more than min_code"));
     }
     let nominal = "m/s² per LSB, a positive number (g per LSB times 9.80665)";
+    let scale = positive("[output] nominal_scale", table.nominal_scale, nominal)?;
+    if let Some(k) = scale.filter(|k| !SCALES.contains(k)) {
+        return Err(value("[output] nominal_scale", k, nominal));
+    }
     Ok(Output {
         quantizer,
         unit,
-        nominal_scale_m_s2_per_lsb: positive(
-            "[output] nominal_scale",
-            table.nominal_scale,
-            nominal,
-        )?,
+        nominal_scale_m_s2_per_lsb: scale,
         rate_hz: positive("[output] rate_hz", table.rate_hz, "samples per second")?,
         ends: ConverterEnds {
             min_code: table.min_code.map(Code),

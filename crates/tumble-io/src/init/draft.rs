@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use crate::error::printable;
+
 /// Tables in the order in which they are written, with what stands under their names.
 const TABLES: [(&str, &str); 6] = [
     ("", ""),
@@ -125,12 +127,14 @@ fn write_line(out: &mut String, l: &Line) {
     };
     let off = if l.kind == Kind::Example { "# " } else { "" };
     let text = format!("{off}{} = {}", l.key, l.value);
-    let beside = format!("{text:<36} # {mark}{}", l.why);
+    // Texts of the files stand in it, and a comment may hold no control characters.
+    let why = printable(&l.why);
+    let beside = format!("{text:<36} # {mark}{why}");
     // Writing into a String cannot fail.
-    let _ = if l.why.is_empty() {
+    let _ = if why.is_empty() {
         writeln!(out, "{text}")
     } else if text.contains('\n') || beside.chars().count() > WIDEST {
-        write_comment(out, &format!("{mark}{}", l.why));
+        write_comment(out, &format!("{mark}{why}"));
         writeln!(out, "{text}")
     } else {
         writeln!(out, "{beside}")

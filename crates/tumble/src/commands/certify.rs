@@ -50,7 +50,7 @@ pub(crate) fn run(args: &CertifyArgs) -> Exit {
                 });
                 match &e {
                     CertifyError::Read(r) => Exit::of_reading(r),
-                    CertifyError::Assess(_) => Exit::Usage,
+                    CertifyError::Assess(_) | CertifyError::NotFinite => Exit::Usage,
                 }
             }
         };

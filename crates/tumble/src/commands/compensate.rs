@@ -5,7 +5,7 @@ use std::io::{self, Read, Write};
 use tumble_core::{Compensator, Quantizer};
 use tumble_io::passport::Passport;
 use tumble_io::{
-    CodeStream, CompensationRefused, Proof, ReadError, advice, advice_at, compensator, open_text,
+    CodeStream, CompensationRefused, Proof, ReadError, advice, compensator, open_text,
 };
 
 use crate::cli::CompensateArgs;
@@ -53,9 +53,8 @@ pub(crate) fn run(args: &CompensateArgs) -> Exit {
 
 fn load(args: &CompensateArgs) -> Result<Compensator, (String, Exit)> {
     let name = args.passport.display();
-    let text = std::fs::read_to_string(&args.passport)
-        .map_err(|e| (format!("{name}: {}", advice_at(e, &args.passport)), Exit::Usage))?;
-    let passport = Passport::from_json(&text).map_err(|e| (format!("{name}: {e}"), Exit::Usage))?;
+    let passport =
+        Passport::read(&args.passport).map_err(|e| (format!("{name}: {e}"), Exit::Usage))?;
     let proof = if args.unproven { Proof::Waived } else { Proof::Required };
     compensator(&passport, proof).map_err(|e| {
         let exit = match e {
@@ -63,9 +62,9 @@ fn load(args: &CompensateArgs) -> Result<Compensator, (String, Exit)> {
             CompensationRefused::Indeterminate { .. } | CompensationRefused::Unproven => {
                 Exit::Indeterminate
             }
-            CompensationRefused::Unknown { .. } | CompensationRefused::Inconsistent { .. } => {
-                Exit::Usage
-            }
+            CompensationRefused::Unknown { .. }
+            | CompensationRefused::Impossible { .. }
+            | CompensationRefused::Inconsistent { .. } => Exit::Usage,
         };
         (format!("{name}: {e}"), exit)
     })
