@@ -235,6 +235,7 @@ impl Refiner<'_> {
             seen = better;
         }
         self.scale(&seen, chosen);
+        self.ends(experiment);
         if let Ok(again) = read(self.draft, self.folder, self.watch) {
             self.range(&again);
         }
@@ -472,6 +473,23 @@ impl Refiner<'_> {
             mode.mark.words()
         );
         near.then(|| (rounded(scale, 7), why))
+    }
+
+    /// A converter that stands at the end of its word: whole dwells of one code `2ⁿ − 1` or `−2ⁿ`.
+    fn ends(&mut self, experiment: &ExperimentFolder) {
+        let clipped: Vec<i64> = positions(experiment)
+            .iter()
+            .filter(|p| p.readings.samples() >= 8)
+            .filter_map(|p| p.readings.only_code().map(|c| i64::from(c.0)))
+            .collect();
+        let is_end = |n: i64| n >= 128 && n.count_ones() == 1;
+        let why = "dwells of this one code: the converter stands at its end there";
+        if let Some(top) = clipped.iter().max().filter(|c| is_end(**c + 1)) {
+            self.draft.set("output", "max_code", top, why, Kind::Assumed);
+        }
+        if let Some(bottom) = clipped.iter().min().filter(|c| is_end(-**c)) {
+            self.draft.set("output", "min_code", bottom, why, Kind::Assumed);
+        }
     }
 
     /// Whether ±90° stand on the table like all others.
