@@ -6,6 +6,7 @@ use tumble_core::assess::assess;
 use tumble_core::estimate::EstimateOptions;
 
 use super::{Scratch, said};
+use crate::catalogue::Catalogue;
 use crate::compensation::{Proof, compensator};
 use crate::folder::{ExperimentFolder, read_described};
 use crate::init::{InitFacts, draft_experiment};
@@ -127,5 +128,19 @@ pub fn passport_json(data: &[u8]) {
                 said(&e);
             }
         }
+    }
+}
+
+/// A user's catalogue of sensor types: refused in words, or read the same way twice.
+pub fn catalogue_toml(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else { return };
+    match (Catalogue::parse(text, "catalogue.toml"), Catalogue::parse(text, "catalogue.toml")) {
+        (Ok(one), Ok(other)) => {
+            assert_eq!(one.to_json(), other.to_json());
+            let both = Catalogue::builtin().with(&one);
+            one.sensors().iter().for_each(|e| assert!(both.find(e.model()).is_some()));
+        }
+        (Err(one), Err(other)) => assert_eq!(said(&one), said(&other)),
+        _ => panic!("read once, refused once"),
     }
 }

@@ -11,7 +11,7 @@ use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-pub use documents::{experiment_toml, init, passport_json};
+pub use documents::{catalogue_toml, experiment_toml, init, passport_json};
 pub use files::{
     code_stream, continuous_record, gz_source, run_file_averaged, run_file_raw, zst_source,
 };
@@ -22,7 +22,7 @@ pub type Target = (&'static str, fn(&[u8]));
 
 /// All targets, in the order in which a value passes through the parsers. Names are those of `fuzz/fuzz_targets` and
 /// `fuzz/corpus`.
-pub const TARGETS: [Target; 14] = [
+pub const TARGETS: [Target; 15] = [
     ("experiment_toml", experiment_toml),
     ("run_file_raw", run_file_raw),
     ("run_file_averaged", run_file_averaged),
@@ -37,6 +37,7 @@ pub const TARGETS: [Target; 14] = [
     ("gz_source", gz_source),
     ("zst_source", zst_source),
     ("plan_string", plan_string),
+    ("catalogue_toml", catalogue_toml),
 ];
 
 /// Longest message: what nobody scrolls back for.
