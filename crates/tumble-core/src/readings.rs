@@ -24,7 +24,10 @@ pub(crate) fn std_from_sums(sum: i128, squares: i128, n: u64) -> Option<f64> {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct ValueMoments {
     sum: i128,
-    squares: i128,
+    /// Sum of squares, low word; a hundred of the very largest readings fill it.
+    squares: u128,
+    /// Its high word.
+    squares_high: u64,
     samples: u64,
 }
 
@@ -56,16 +59,22 @@ impl ValueMoments {
     /// Adds one reading, given in [`Self::steps`].
     pub fn record(&mut self, steps: i128) {
         self.sum += steps;
-        // Squares of 1e18 steps: 1e36 each, so a hundred of the very largest fit; real readings, billions.
-        self.squares = self.squares.saturating_add(steps * steps);
+        self.add_squares((steps * steps).unsigned_abs(), 0);
         self.samples += 1;
     }
 
     /// Adds another dwell's sums.
     pub fn merge(&mut self, other: &Self) {
         self.sum += other.sum;
-        self.squares = self.squares.saturating_add(other.squares);
+        self.add_squares(other.squares, other.squares_high);
         self.samples += other.samples;
+    }
+
+    #[inline]
+    fn add_squares(&mut self, low: u128, high: u64) {
+        let (sum, carry) = self.squares.overflowing_add(low);
+        self.squares = sum;
+        self.squares_high += high + u64::from(carry);
     }
 
     /// Number of readings.
@@ -83,7 +92,22 @@ impl ValueMoments {
     /// Sample standard deviation (n − 1).
     #[must_use]
     pub fn std(&self) -> Option<f64> {
-        std_from_sums(self.sum, self.squares, self.samples).map(|s| s * Self::RESOLUTION)
+        if self.samples < 2 {
+            return None;
+        }
+        const WORD: f64 = (1u128 << 127) as f64 * 2.0;
+        let (sum, n) = (self.sum as f64, self.samples as f64);
+        let rough = self.squares_high as f64 * WORD + self.squares as f64 - sum * sum / n;
+        // Scatter that fills the word itself does not cancel.
+        if rough > WORD / 8.0 {
+            return Some((rough / (n - 1.0)).sqrt() * Self::RESOLUTION);
+        }
+        // Σ(x − m)² = Σx² − m (Σx + r) with Σx = n m + r: below one word, so the low words say it all.
+        let count = i128::from(self.samples);
+        let (m, r) = (self.sum.div_euclid(count), self.sum.rem_euclid(count));
+        let product = m.wrapping_mul(self.sum.wrapping_add(r));
+        let about_m = (self.squares as i128).wrapping_sub(product);
+        std_from_sums(r, about_m, self.samples).map(|s| s * Self::RESOLUTION)
     }
 }
 
@@ -240,6 +264,25 @@ mod tests {
         assert!((forward.mean().unwrap() - 24.691_200_000_2).abs() < 1e-12);
         assert!(ValueMoments::steps(f64::NAN).is_err());
         assert!(ValueMoments::steps(1e7).is_err());
+    }
+
+    #[test]
+    fn large_readings_keep_their_scatter() {
+        // The sum of their squares fills more than 128 bits.
+        let mut halves = [ValueMoments::default(), ValueMoments::default()];
+        for i in 0..100_000 {
+            let value = -999_000.0 + if i % 2 == 0 { 0.25 } else { -0.25 };
+            halves[i / 50_000].record(ValueMoments::steps(value).unwrap());
+        }
+        let [mut whole, other] = halves;
+        whole.merge(&other);
+        let expected = 0.25 * (100_000.0_f64 / 99_999.0).sqrt();
+        assert!((whole.std().unwrap() / expected - 1.0).abs() < 1e-9, "{:?}", whole.std());
+        let mut wild = ValueMoments::default();
+        for i in 0..100_000 {
+            wild.record(ValueMoments::steps(if i % 2 == 0 { 1e6 } else { -1e6 }).unwrap());
+        }
+        assert!((wild.std().unwrap() / 1e6 - 1.0).abs() < 1e-5, "{:?}", wild.std());
     }
 
     #[test]
