@@ -88,6 +88,7 @@ pub(crate) struct CsvTable {
     pub(crate) missing: Option<String>,
     pub(crate) code_format: Option<String>,
     pub(crate) code_bits: Option<u32>,
+    pub(crate) code_offset: Option<i32>,
     pub(crate) time_unit: Option<String>,
     /// For all files; a run's own go before.
     #[serde(default)]

@@ -99,6 +99,10 @@ fn one_record_in_more_dresses() {
             b"angle_deg,code\n-30.5,0x000A\n-30.5,000c\n30,FFF9\n".to_vec(),
         ),
         (
+            Toml { csv: "code_offset = 2048", ..PLAIN },
+            b"angle_deg,code\n-30.5,2058\n-30.5,2060\n30,2041\n".to_vec(),
+        ),
+        (
             Toml { csv: "code_bits = 12", ..PLAIN },
             b"angle_deg,code\n-30.5,10\n-30.5,12\n30,4089\n".to_vec(),
         ),

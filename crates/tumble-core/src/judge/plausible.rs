@@ -44,7 +44,7 @@ pub fn plausible(
     [
         scale_error.and_then(|dk| look.at_scale_error(dk, output)),
         misalignment.and_then(|dphi| look.at_misalignment(dphi)),
-        bias.and_then(|b| look.at_bias(b)),
+        bias.and_then(|b| look.at_bias(b, output.0)),
     ]
     .into_iter()
     .flatten()
@@ -128,13 +128,15 @@ impl Look<'_> {
         })
     }
 
-    fn at_bias(&self, b: f64) -> Option<Finding> {
-        if self.surely_beyond(Parameter::Bias, b, self.gravity_m_s2) {
+    fn at_bias(&self, b: f64, output: &Output) -> Option<Finding> {
+        // Volts at 0 g are where the maker put them (half the supply), and no acceleration.
+        let electrical = matches!(output.unit.as_str(), "V" | "mV");
+        if !electrical && self.surely_beyond(Parameter::Bias, b, self.gravity_m_s2) {
             return Some(self.finding(
                 FindingKind::BiasImpossible,
                 format!("bias {b:+.3} m/s²"),
                 format!("±{:.2} m/s²", self.gravity_m_s2),
-                "check the converter's coding (signed or unsigned codes, an offset) and the angle column",
+                "check the converter's coding (signed or unsigned codes, an offset) and the angle column; codes that count from the middle of the converter's range (offset binary) want code_offset in [csv], for instance code_offset = 2048",
             ));
         }
         self.surely_beyond(Parameter::Bias, b, BIAS_UNUSUAL_M_S2).then(|| {
@@ -142,7 +144,11 @@ impl Look<'_> {
                 FindingKind::Unusual,
                 format!("bias {b:+.3} m/s²"),
                 format!("±{BIAS_UNUSUAL_M_S2} m/s²"),
-                "check the data sheet's zero-g limits and the converter's reference",
+                if electrical {
+                    "volts at 0 g count as bias here (half the supply, often): hold them against the data sheet's zero-g level"
+                } else {
+                    "check the data sheet's zero-g limits and the converter's reference"
+                },
             )
         })
     }

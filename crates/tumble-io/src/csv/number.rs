@@ -18,13 +18,15 @@ pub(crate) struct CodeFormat {
     pub(crate) hexadecimal: bool,
     /// The codes are words of so many bits in two's complement, written without their sign: 65535 is −1 in 16.
     pub(crate) bits: Option<u32>,
+    /// Taken off every code: the code of zero input of a converter that counts from the middle of its range.
+    pub(crate) offset: i32,
 }
 
 impl CodeFormat {
     /// Whether codes are plain decimal numbers with their sign.
     #[inline]
     pub(crate) fn is_plain(self) -> bool {
-        !self.hexadecimal && self.bits.is_none()
+        !self.hexadecimal && self.bits.is_none() && self.offset == 0
     }
 
     /// A code as it is written.
@@ -46,7 +48,7 @@ impl CodeFormat {
                 if value >= span / 2 { value - span } else { value }
             }
         };
-        i32::try_from(signed).ok()
+        i32::try_from(signed.checked_sub(i64::from(self.offset))?).ok()
     }
 }
 
@@ -253,18 +255,18 @@ mod tests {
 
     #[test]
     fn words_without_their_sign() {
-        let hex = CodeFormat { hexadecimal: true, bits: Some(16) };
+        let hex = CodeFormat { hexadecimal: true, bits: Some(16), offset: 0 };
         assert_eq!(hex.code(b"FFFF"), Some(-1));
         assert_eq!(hex.code(b"0x7fff"), Some(32767));
         assert_eq!(hex.code(b"8000h"), Some(-32768));
         assert_eq!(hex.code(b"10000"), None);
-        let word = CodeFormat { hexadecimal: false, bits: Some(16) };
+        let word = CodeFormat { hexadecimal: false, bits: Some(16), offset: 0 };
         assert_eq!(word.code(b"65535"), Some(-1));
         assert_eq!(word.code(b"-1"), None);
         assert_eq!(word.code(b"65536"), None);
-        let long = CodeFormat { hexadecimal: false, bits: Some(32) };
+        let long = CodeFormat { hexadecimal: false, bits: Some(32), offset: 0 };
         assert_eq!(long.code(b"4294967295"), Some(-1));
-        assert_eq!(CodeFormat { hexadecimal: true, bits: None }.code(b"-1F"), None);
+        assert_eq!(CodeFormat { hexadecimal: true, bits: None, offset: 0 }.code(b"-1F"), None);
     }
 
     #[test]

@@ -96,7 +96,7 @@ const FARTHEST_TIME_S: f64 = 1e20;
 
 /// What to do about a code that is none.
 fn code_remedy(text: &[u8], format: CodeFormat) -> &'static str {
-    let hex = CodeFormat { hexadecimal: true, bits: None };
+    let hex = CodeFormat { hexadecimal: true, bits: None, offset: 0 };
     match text {
         t if says_missing(t) => MISSING,
         t if format.bits.is_some() && format.code(t).is_none() && integer(t).is_some() => {

@@ -114,7 +114,7 @@ fn is_number(field: &str) -> bool {
     let bytes = field.as_bytes();
     // Between commas, a comma in a field stood in quotes.
     let decimal = DecimalSign::CommaOrPoint;
-    let hex = CodeFormat { hexadecimal: true, bits: None };
+    let hex = CodeFormat { hexadecimal: true, bits: None, offset: 0 };
     real(bytes, decimal).is_some()
         || date_s(bytes).is_some()
         || dms(bytes, decimal).is_some()

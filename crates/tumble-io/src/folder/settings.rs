@@ -241,7 +241,11 @@ pub(super) fn dialect(csv: &CsvTable, bench: &BenchTable) -> Result<Dialect, Rea
         decimal,
         comment: csv.comment.clone().unwrap_or_default().into_bytes(),
         missing,
-        codes: CodeFormat { hexadecimal, bits: csv.code_bits },
+        codes: CodeFormat {
+            hexadecimal,
+            bits: csv.code_bits,
+            offset: csv.code_offset.unwrap_or(0),
+        },
         time_unit,
         angle_unit,
     })

@@ -92,7 +92,7 @@ impl Way {
                 decimal,
                 comment,
                 missing,
-                codes: CodeFormat { hexadecimal, bits },
+                codes: CodeFormat { hexadecimal, bits, offset: 0 },
                 time_unit,
                 angle_unit,
             },

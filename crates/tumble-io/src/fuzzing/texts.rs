@@ -32,12 +32,12 @@ pub fn numbers(field: &[u8]) {
         assert_eq!(real(again.as_bytes(), sign), Some(value), "{again}");
     }
     for hexadecimal in [false, true] {
-        let plain = CodeFormat { hexadecimal, bits: None };
+        let plain = CodeFormat { hexadecimal, bits: None, offset: 0 };
         if !hexadecimal && let Some(n) = whole {
             assert_eq!(plain.code(field), Some(n));
         }
         for bits in 2..=32 {
-            let format = CodeFormat { hexadecimal, bits: Some(bits) };
+            let format = CodeFormat { hexadecimal, bits: Some(bits), offset: 0 };
             let Some(code) = format.code(field) else { continue };
             let half = 1i64 << (bits - 1);
             assert!((-half..half).contains(&i64::from(code)), "{code} in {bits} bits");

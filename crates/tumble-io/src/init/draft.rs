@@ -80,6 +80,10 @@ impl Draft {
         }
     }
 
+    pub(super) fn has(&self, table: &str, key: &str) -> bool {
+        self.lines.iter().any(|l| l.table == table && l.key == key)
+    }
+
     pub(super) fn remove(&mut self, table: &'static str, key: &'static str) {
         self.lines.retain(|l| l.table != table || l.key != key);
     }

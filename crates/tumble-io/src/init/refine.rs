@@ -230,6 +230,7 @@ impl Refiner<'_> {
         if let Some(better) = self.try_units_of_the_dial(&seen, experiment) {
             seen = better;
         }
+        self.middle_of_the_range(&seen, chosen);
         self.sign_and_zero(&seen);
         if let Some(better) = self.try_truncation(&seen, chosen) {
             seen = better;
@@ -473,6 +474,21 @@ impl Refiner<'_> {
             mode.mark.words()
         );
         near.then(|| (rounded(scale, 7), why))
+    }
+
+    /// A converter that counts from the middle of its range: no negative code, and 0 g reads half of a word.
+    fn middle_of_the_range(&mut self, seen: &FirstLook, chosen: Option<usize>) {
+        let Some(column) = chosen.map(|i| &self.surveys[0].columns[i]) else { return };
+        if column.is_real() || column.least < 0.0 || self.draft.has("csv", "code_bits") {
+            return;
+        }
+        let middle = WORDS.into_iter().take(8).map(|b| 2f64.powi(b as i32 - 1)).find(|m| {
+            (seen.offset - m).abs() < 0.25 * seen.amplitude && seen.offset > seen.amplitude
+        });
+        if let Some(middle) = middle {
+            let why = "no code is negative and 0 g reads half of a word: offset binary, counted from the middle";
+            self.draft.set("csv", "code_offset", format!("{middle:.0}"), why, Kind::Assumed);
+        }
     }
 
     /// A converter that stands at the end of its word: whole dwells of one code `2ⁿ − 1` or `−2ⁿ`.

@@ -99,7 +99,7 @@ impl Column {
         if real(field, decimal).is_none() && dms(field, decimal).is_some() {
             self.dms += 1;
         }
-        let hex = CodeFormat { hexadecimal: true, bits: None };
+        let hex = CodeFormat { hexadecimal: true, bits: None, offset: 0 };
         if field.len() <= 10 && hex.code(field).is_some() {
             let digits = field.len()
                 - if field.starts_with(b"0x") || field.starts_with(b"0X") { 2 } else { 0 };

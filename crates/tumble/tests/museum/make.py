@@ -704,12 +704,9 @@ def _(c, rng):
     s = Sensor(rng, per_g=800.0)
     rows, dwells = record(s)
     c.write("adc.csv", "angle,raw\n" + "".join(f"{a:g},{n + 0x800:03X}\n" for a, n in rows))
-    # The middle of the converter is part of what it reads at 0 g.
-    s.bias += 0x800 * s.k
     c.read("adc.csv", s, dwells)
-    c.says('code_format = "hex"')
+    c.says('code_format = "hex"', "code_offset = 2048")
     c.says_not("code_bits =")
-    c.rejected = True
 
 
 @case(44, "unsigned-16-bit", "Signed words printed without their sign: 65535 after 0.")
@@ -894,7 +891,6 @@ def _(c, rng):
     c.write("adc.csv", "angle,Vout [V]\n" + "".join(f"{a:g},{r + 1.65:.5f}\n" for a, r in rows))
     s.bias += 1.65 * s.k
     c.read("adc.csv", s, dwells)
-    c.rejected = True
     c.says('quantizer = "none"', 'unit = "V"')
 
 
