@@ -46,7 +46,7 @@ impl Noise {
 }
 
 fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len().max(1) as f64
+    crate::stats::mean(values).unwrap_or(0.0)
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

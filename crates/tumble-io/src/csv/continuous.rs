@@ -3,7 +3,7 @@
 
 use std::io::Read;
 
-use tumble_core::{Dial, still_stretches};
+use tumble_core::{Dial, stats, still_stretches};
 
 use super::header::Columns;
 use super::lines::Lines;
@@ -66,7 +66,7 @@ pub(super) fn read<R: Read>(
         let found = stretches
             .iter()
             .map(|s| {
-                let level = reals[s.clone()].iter().sum::<f64>() / s.len().max(1) as f64;
+                let level = stats::mean(&reals[s.clone()]).unwrap_or_default();
                 format!("lines {}–{} at {level:.4}", kept[s.start].line, kept[s.end - 1].line)
             })
             .collect();

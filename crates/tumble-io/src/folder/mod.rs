@@ -1,4 +1,6 @@
 //! An experiment folder as the core's [`Experiment`].
+//!
+//! Past 500 lines: runs and the up/down pair share the reader and its checks of paths; the pair is the next to move out.
 
 mod settings;
 
