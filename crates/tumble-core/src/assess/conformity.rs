@@ -2,7 +2,7 @@
 
 use super::{PooledParameter, Verdict, scale_factor};
 use crate::decision::{
-    Belief, ConformityProbability, GlobalRisk, Judged, Limits, Production, Requirement, Rule,
+    Belief, ConformityProbability, GlobalRisk, Limits, Production, Quantity, Requirement, Rule,
     Specification, Status, WorstCase, global_risk,
 };
 use crate::{Finding, FindingKind};
@@ -17,7 +17,7 @@ pub(crate) const LOW_TEST_UNCERTAINTY_RATIO: f64 = 3.0;
 #[derive(Debug, Clone, PartialEq)]
 pub struct QuantityConformity {
     /// Which quantity.
-    pub judged: Judged,
+    pub quantity: Quantity,
     /// Set for misalignments when there are several mountings.
     pub mounting: Option<String>,
     /// What is known of it.
@@ -51,7 +51,7 @@ impl QuantityConformity {
     }
 
     fn name(&self) -> String {
-        let words = self.judged.name().replace('_', " ");
+        let words = self.quantity.name().replace('_', " ");
         self.mounting.as_ref().map_or(words.clone(), |m| format!("{words} (mounting {m})"))
     }
 }
@@ -63,7 +63,7 @@ pub struct Conformity {
     pub status: Status,
     /// The rule that decided.
     pub rule: Rule,
-    /// Why nothing was assessed.
+    /// Why limits that are given were not assessed; `None` where they were, or where there are none.
     pub reason: Option<String>,
     /// Quantities with limits, in order.
     pub quantities: Vec<QuantityConformity>,
@@ -73,18 +73,19 @@ pub struct Conformity {
 
 impl Conformity {
     /// Nothing was assessed, and why.
-    fn not_assessed(rule: Rule, reason: &str) -> Self {
+    fn not_assessed(rule: Rule, reason: Option<&str>) -> Self {
         Self {
             status: Status::NotAssessed,
             rule,
-            reason: Some(reason.to_owned()),
+            reason: reason.map(str::to_owned),
             quantities: Vec::new(),
             statement: None,
         }
     }
 
     /// What the decision leaves to know.
-    pub(super) fn findings(&self) -> Vec<Finding> {
+    #[must_use]
+    pub fn findings(&self) -> Vec<Finding> {
         self.quantities.iter().filter_map(|q| uncertainty_finding(q, self.rule)).collect()
     }
 }
@@ -105,25 +106,25 @@ pub fn conformity(
 ) -> Conformity {
     let rule = specification.rule;
     if specification.requirements().next().is_none() {
-        return Conformity::not_assessed(rule, "no limits are given in [spec]");
+        return Conformity::not_assessed(rule, None);
     }
     let Some(pooled) = pooled else {
         let reason = match verdict {
             Verdict::Rejected => "the calibration is rejected, so there is no value to judge",
             _ => "the calibration has no result yet: see what is missing",
         };
-        return Conformity::not_assessed(rule, reason);
+        return Conformity::not_assessed(rule, Some(reason));
     };
     let mut quantities = Vec::new();
-    for (judged, requirement) in specification.requirements() {
-        for value in values(judged, pooled, nominal_scale_m_s2_per_lsb) {
-            quantities.push(decide(rule, judged, requirement, &value));
+    for (quantity, requirement) in specification.requirements() {
+        for value in values(quantity, pooled, nominal_scale_m_s2_per_lsb) {
+            quantities.push(decide(rule, quantity, requirement, &value));
         }
     }
     let Some(status) = quantities.iter().map(|q| q.status).max() else {
         return Conformity::not_assessed(
             rule,
-            "the result has no value of what the limits are for",
+            Some("the result has no value of what the limits are for"),
         );
     };
     let statement = statement(specification, &quantities, status, level, verdict);
@@ -131,11 +132,15 @@ pub fn conformity(
 }
 
 /// The values of a quantity: one, or a misalignment for each mounting.
-fn values(judged: Judged, pooled: &[PooledParameter], nominal_scale: f64) -> Vec<PooledParameter> {
+fn values(
+    quantity: Quantity,
+    pooled: &[PooledParameter],
+    nominal_scale: f64,
+) -> Vec<PooledParameter> {
     let of = |parameter| pooled.iter().filter(move |p| p.parameter == parameter);
-    match judged {
-        Judged::Parameter(parameter) => of(parameter).cloned().collect(),
-        Judged::ScaleFactor => of(crate::estimate::Parameter::ScaleError)
+    match quantity {
+        Quantity::Parameter(parameter) => of(parameter).cloned().collect(),
+        Quantity::ScaleFactor => of(crate::estimate::Parameter::ScaleError)
             .map(|p| scale_factor(p, nominal_scale))
             .collect(),
     }
@@ -143,7 +148,7 @@ fn values(judged: Judged, pooled: &[PooledParameter], nominal_scale: f64) -> Vec
 
 fn decide(
     rule: Rule,
-    judged: Judged,
+    quantity: Quantity,
     requirement: &Requirement,
     value: &PooledParameter,
 ) -> QuantityConformity {
@@ -156,7 +161,7 @@ fn decide(
     };
     let acceptance = rule.acceptance(limits, u);
     QuantityConformity {
-        judged,
+        quantity,
         mounting: value.mounting.clone(),
         belief,
         expanded_uncertainty: u,
@@ -182,7 +187,7 @@ fn uncertainty_finding(q: &QuantityConformity, rule: Rule) -> Option<Finding> {
             observed: format!(
                 "a guard band of {} U on both sides, and a tolerance of {} U",
                 rule.guard_multiple(),
-                significant(2.0 * ratio)
+                significant(2.0 * ratio, 3)
             ),
             limit: "room between the acceptance limits".into(),
             remedy: "lower the uncertainty (more runs, a better table), widen the limits, or agree another rule with the customer: decision_rule = \"non-binary\" answers with a condition".into(),
@@ -191,7 +196,7 @@ fn uncertainty_finding(q: &QuantityConformity, rule: Rule) -> Option<Finding> {
     (ratio < LOW_TEST_UNCERTAINTY_RATIO).then(|| Finding {
         kind: FindingKind::LowUncertaintyRatio,
         place,
-        observed: format!("tolerance / 2U = {}", significant(ratio)),
+        observed: format!("tolerance / 2U = {}", significant(ratio, 3)),
         limit: format!("at least {LOW_TEST_UNCERTAINTY_RATIO}"),
         remedy: "lower the uncertainty (more runs, a better table, up/down dwells) before relying on this decision".into(),
     })
@@ -207,7 +212,7 @@ fn statement(
 ) -> String {
     let document = specification.name.as_deref().unwrap_or("the limits of [spec]");
     let mut text = format!(
-        "{} against {document}: {}, mean over the measured power-ups. {}",
+        "{} against {document}: {}, mean over power-ups. {}",
         in_words(status),
         listed(quantities),
         rule_in_words(specification.rule, level)
@@ -236,9 +241,9 @@ fn statement(
 /// `bias, misalignment in 2 mountings and scale error`.
 fn listed(quantities: &[QuantityConformity]) -> String {
     let mut names: Vec<String> = Vec::new();
-    for judged in Judged::ALL {
-        let words = judged.name().replace('_', " ");
-        match quantities.iter().filter(|q| q.judged == judged).count() {
+    for quantity in Quantity::ALL {
+        let words = quantity.name().replace('_', " ");
+        match quantities.iter().filter(|q| q.quantity == quantity).count() {
             0 => {}
             1 => names.push(words),
             n => names.push(format!("{words} in {n} mountings")),
@@ -271,9 +276,9 @@ fn rule_in_words(rule: Rule, level: f64) -> String {
         Rule::NonBinary(_) => "non-binary",
     };
     format!(
-        "Decision rule: {name} (ILAC-G8:09/2019, JCGM 106), guard band w = {} U, U at {}.",
-        rule.guard_multiple(),
-        percent(level)
+        "Decision rule: {name} (ILAC-G8:09/2019, JCGM 106), guard band w = {} U, U at {} %.",
+        significant(rule.guard_multiple(), 3),
+        significant(100.0 * level, 5)
     )
 }
 
@@ -282,12 +287,13 @@ fn percent(p: f64) -> String {
     if p > 0.0 && p < 1e-6 {
         return format!("{p:.0e}");
     }
-    format!("{} %", significant(100.0 * p))
+    format!("{} %", significant(100.0 * p, 3))
 }
 
-/// Three significant digits, without zeros that say nothing.
-fn significant(v: f64) -> String {
-    let places = (2.0 - v.abs().max(1e-9).log10().floor()).clamp(0.0, 9.0) as usize;
+/// Some significant digits, without zeros that say nothing.
+fn significant(v: f64, digits: u32) -> String {
+    let last = f64::from(digits) - 1.0 - v.abs().max(1e-9).log10().floor();
+    let places = last.clamp(0.0, 12.0) as usize;
     let text = format!("{v:.places$}");
     match text.contains('.') {
         true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),

@@ -16,4 +16,4 @@ pub use belief::{Belief, ConformityProbability, Distribution};
 pub use global::{GlobalRisk, Production, global_risk};
 pub use limits::Limits;
 pub use rule::{GuardMultiple, Rule, Status, WorstCase};
-pub use specification::{Judged, Requirement, Specification};
+pub use specification::{Quantity, Requirement, Specification};

@@ -5,14 +5,14 @@ use crate::estimate::Parameter;
 
 /// A quantity of the result that can have limits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Judged {
+pub enum Quantity {
     /// One of the parameters.
     Parameter(Parameter),
     /// The scale factor `k*`, m/s² per LSB.
     ScaleFactor,
 }
 
-impl Judged {
+impl Quantity {
     /// All, in the order in which they are judged.
     pub const ALL: [Self; 4] = [
         Self::Parameter(Parameter::Bias),
@@ -70,7 +70,7 @@ pub struct Specification {
 
 impl Specification {
     /// Longest name of a document, in characters: it stands in a statement that has to stay readable.
-    pub const LONGEST_NAME: usize = 120;
+    pub const LONGEST_NAME: usize = 80;
 
     /// A specification without limits so far.
     #[must_use]
@@ -79,18 +79,18 @@ impl Specification {
     }
 
     /// Asks for limits of a quantity.
-    pub fn require(&mut self, judged: Judged, requirement: Requirement) {
-        self.requirements[judged.index()] = Some(requirement);
+    pub fn require(&mut self, quantity: Quantity, requirement: Requirement) {
+        self.requirements[quantity.index()] = Some(requirement);
     }
 
     /// What is asked of a quantity.
     #[must_use]
-    pub fn of(&self, judged: Judged) -> Option<&Requirement> {
-        self.requirements[judged.index()].as_ref()
+    pub fn of(&self, quantity: Quantity) -> Option<&Requirement> {
+        self.requirements[quantity.index()].as_ref()
     }
 
     /// All that is asked, in order.
-    pub fn requirements(&self) -> impl Iterator<Item = (Judged, &Requirement)> {
-        Judged::ALL.into_iter().filter_map(|j| self.of(j).map(|r| (j, r)))
+    pub fn requirements(&self) -> impl Iterator<Item = (Quantity, &Requirement)> {
+        Quantity::ALL.into_iter().filter_map(|j| self.of(j).map(|r| (j, r)))
     }
 }

@@ -1,7 +1,7 @@
 //! The limits of `[spec]`: units that people have, one notation each, every refusal with its key.
 
 use tumble_core::decision::{
-    GuardMultiple, Judged, Limits, Production, Requirement, Rule, Specification,
+    GuardMultiple, Limits, Production, Quantity, Requirement, Rule, Specification,
 };
 use tumble_core::estimate::Parameter;
 use tumble_core::{ARCMIN_RAD, STANDARD_GRAVITY_M_S2};
@@ -15,7 +15,7 @@ const LARGEST: f64 = 1e6;
 
 /// The keys of one quantity: limits with their units in SI, and what is known of the production.
 struct Keys<'t> {
-    judged: Judged,
+    quantity: Quantity,
     limits: Vec<(&'static str, Option<&'t LimitsValue>, f64)>,
     prior: (&'static str, Option<[f64; 2]>),
 }
@@ -23,7 +23,7 @@ struct Keys<'t> {
 fn keys(t: &SpecTable) -> [Keys<'_>; 4] {
     [
         Keys {
-            judged: Judged::Parameter(Parameter::Bias),
+            quantity: Quantity::Parameter(Parameter::Bias),
             limits: vec![
                 ("bias_limits_m_s2", t.bias_limits_m_s2.as_ref(), 1.0),
                 ("bias_limits_mg", t.bias_limits_mg.as_ref(), 1e-3 * STANDARD_GRAVITY_M_S2),
@@ -31,7 +31,7 @@ fn keys(t: &SpecTable) -> [Keys<'_>; 4] {
             prior: ("prior_bias_m_s2", t.prior_bias_m_s2),
         },
         Keys {
-            judged: Judged::Parameter(Parameter::Misalignment),
+            quantity: Quantity::Parameter(Parameter::Misalignment),
             limits: vec![
                 ("misalignment_limits_rad", t.misalignment_limits_rad.as_ref(), 1.0),
                 ("misalignment_limits_arcmin", t.misalignment_limits_arcmin.as_ref(), ARCMIN_RAD),
@@ -39,7 +39,7 @@ fn keys(t: &SpecTable) -> [Keys<'_>; 4] {
             prior: ("prior_misalignment_rad", t.prior_misalignment_rad),
         },
         Keys {
-            judged: Judged::Parameter(Parameter::ScaleError),
+            quantity: Quantity::Parameter(Parameter::ScaleError),
             limits: vec![
                 ("scale_error_limits", t.scale_error_limits.as_ref(), 1.0),
                 ("scale_error_limits_percent", t.scale_error_limits_percent.as_ref(), 1e-2),
@@ -48,7 +48,7 @@ fn keys(t: &SpecTable) -> [Keys<'_>; 4] {
             prior: ("prior_scale_error", t.prior_scale_error),
         },
         Keys {
-            judged: Judged::ScaleFactor,
+            quantity: Quantity::ScaleFactor,
             limits: vec![("scale_factor_limits", t.scale_factor_limits.as_ref(), 1.0)],
             prior: ("prior_scale_factor", t.prior_scale_factor),
         },
@@ -68,8 +68,8 @@ pub(super) fn specification(table: &SpecTable) -> Result<Specification, ReadErro
         let production = prior.map(|p| production(prior_key, p)).transpose()?;
         match first {
             Some((key, v, unit)) => {
-                let limits = limits(keys.judged, key, v, unit)?;
-                out.require(keys.judged, Requirement { limits, production });
+                let limits = limits(keys.quantity, key, v, unit)?;
+                out.require(keys.quantity, Requirement { limits, production });
             }
             None if production.is_some() => {
                 let key = keys.limits.first().map_or("limits", |(k, ..)| *k);
@@ -134,10 +134,10 @@ fn rule(table: &SpecTable) -> Result<Rule, ReadError> {
     }
 }
 
-fn limits(judged: Judged, key: &str, v: &LimitsValue, unit: f64) -> Result<Limits, ReadError> {
+fn limits(quantity: Quantity, key: &str, v: &LimitsValue, unit: f64) -> Result<Limits, ReadError> {
     let expected = "[lowest, highest] with the lowest first; -inf or inf leaves a side open, a single number x stands for -x to x";
     let (given, [lower, upper]) = match *v {
-        LimitsValue::Around(x) if judged == Judged::ScaleFactor => {
+        LimitsValue::Around(x) if quantity == Quantity::ScaleFactor => {
             let expected =
                 "[lowest, highest] in m/s² per LSB: a scale factor does not lie around zero";
             return Err(spec(key, x, expected));
@@ -178,7 +178,7 @@ mod tests {
 
     fn bias(lines: &str) -> (f64, f64) {
         let all = read(lines).unwrap();
-        all.of(Judged::Parameter(Parameter::Bias)).unwrap().limits.ends()
+        all.of(Quantity::Parameter(Parameter::Bias)).unwrap().limits.ends()
     }
 
     #[test]
@@ -191,9 +191,9 @@ mod tests {
         let other = read("scale_error_limits_percent = [-4, 4]\nmisalignment_limits_arcmin = 60");
         let other = other.unwrap();
         let of = |j| other.of(j).unwrap().limits.upper().unwrap();
-        assert!((of(Judged::Parameter(Parameter::ScaleError)) - 0.04).abs() < 1e-15);
+        assert!((of(Quantity::Parameter(Parameter::ScaleError)) - 0.04).abs() < 1e-15);
         let one_degree = 1f64.to_radians();
-        assert!((of(Judged::Parameter(Parameter::Misalignment)) - one_degree).abs() < 1e-15);
+        assert!((of(Quantity::Parameter(Parameter::Misalignment)) - one_degree).abs() < 1e-15);
         assert_eq!(read("").unwrap(), Specification::default());
     }
 

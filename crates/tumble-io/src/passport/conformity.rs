@@ -11,8 +11,8 @@ pub(super) fn conformity(
     level: f64,
 ) -> wire::Conformity {
     let status = c.status.name().to_owned();
-    if let Some(reason) = &c.reason {
-        return wire::Conformity { status, reason: Some(reason.clone()), ..Default::default() };
+    if c.quantities.is_empty() {
+        return wire::Conformity { status, reason: c.reason.clone(), ..Default::default() };
     }
     wire::Conformity {
         status,
@@ -29,9 +29,9 @@ pub(super) fn conformity(
 fn quantity(q: &QuantityConformity) -> wire::ParameterConformity {
     let ends = |l: Limits| [l.lower(), l.upper()];
     wire::ParameterConformity {
-        parameter: q.judged.name().into(),
+        parameter: q.quantity.name().into(),
         mounting: q.mounting.clone(),
-        unit: q.judged.unit().into(),
+        unit: q.quantity.unit().into(),
         value: q.belief.value,
         standard_uncertainty: q.belief.standard_uncertainty,
         expanded_uncertainty: q.expanded_uncertainty,
