@@ -6,7 +6,7 @@ use tumble_core::decision::{
     Distribution, GuardMultiple, Limits, Production, Quantity, Requirement, Rule, Specification,
     Status,
 };
-use tumble_core::estimate::{EstimateOptions, Parameter};
+use tumble_core::estimate::{EstimateOptions, Method, Parameter};
 use tumble_core::simulate::{Preset, Truth, experiment};
 use tumble_core::{FindingKind, Severity};
 
@@ -210,6 +210,42 @@ fn a_stated_production_adds_global_risks() {
     // scipy 1.17.1, `integrate.quad` with A = ±(0.25 - t(4).ppf(0.975)·0.02).
     assert!((risk.consumer - 5.048_245_302_875e-6).abs() < 1e-12, "{risk:?}");
     assert!((risk.producer - 0.044_113_297_408_742).abs() < 1e-12, "{risk:?}");
+}
+
+/// The whole way, with known truth: a unit whose bias lies at its limit does not conform any better than it fails, and
+/// the guarded rule passes it in 2.5 % of all calibrations; simple acceptance in half of them.
+#[test]
+fn a_unit_at_its_limit_passes_as_often_as_the_rule_says() {
+    let n: u64 = if std::env::var_os("TUMBLE_LONG").is_some() { 20_000 } else { 2_000 };
+    let truth = Truth {
+        bias_m_s2: 0.1,
+        turn_on_m_s2: 0.01,
+        angles_deg: (-6..=6).map(|i| 10.0 * f64::from(i)).collect(),
+        dwell_s: 0.2,
+        runs: 4,
+        ..Preset::Paper3.truth()
+    };
+    let options = EstimateOptions { method: Method::Exact, ..EstimateOptions::default() };
+    let limits = Limits::new(None, Some(truth.bias_m_s2)).unwrap();
+    let (mut guarded, mut simple, mut assessed) = (0u64, 0u64, 0u64);
+    for seed in 0..n {
+        let mut unit = experiment(&Truth { seed, ..truth.clone() });
+        unit.specification.require(BIAS, Requirement { limits, production: None });
+        let judged = assess(&unit, &options).unwrap().conformity;
+        let Some(q) = judged.quantities.first() else { continue };
+        assessed += 1;
+        guarded += u64::from(q.status == Status::Pass);
+        let plainly = Rule::Simple.decide(limits, q.belief.value, q.expanded_uncertainty);
+        simple += u64::from(plainly == Status::Pass);
+    }
+    assert!(assessed * 100 >= n * 98, "{assessed} of {n}");
+    for (count, stated) in [(guarded, 0.025), (simple, 0.5)] {
+        let share = count as f64 / assessed as f64;
+        // Four standard deviations of a binomial share.
+        let band = 4.0 * (stated * (1.0 - stated) / assessed as f64).sqrt();
+        println!("{share:.4} for {stated} ± {band:.4} of {assessed}");
+        assert!((share - stated).abs() < band, "{share} for {stated}");
+    }
 }
 
 /// A unit far out of its limits: its calibration is as good as before.

@@ -92,10 +92,10 @@ impl Line {
             },
             short_name,
             value: value_with_uncertainty(unit.of(q.value), unit.of(q.expanded_uncertainty)),
-            limits: between(q.limits, &unit),
+            limits: between(q.limits, &unit, 7),
             acceptance: q
                 .acceptance_limits
-                .map_or_else(|| "no room between guard bands".into(), |a| between(a, &unit)),
+                .map_or_else(|| "no room between guard bands".into(), |a| between(a, &unit, 5)),
             unit: unit.name,
             status: status(&q.status),
             conforms: nearly_certain(q.probability_of_conformity),
@@ -107,8 +107,8 @@ impl Line {
 }
 
 /// `-0.25 to 0.25`, `at most 0.25`, `at least -0.25`.
-fn between(ends: [Option<f64>; 2], unit: &Unit) -> String {
-    let shown = |v: f64| trimmed(&significant(unit.of(v), 5)).to_owned();
+fn between(ends: [Option<f64>; 2], unit: &Unit, digits: i32) -> String {
+    let shown = |v: f64| trimmed(&significant(unit.of(v), digits)).to_owned();
     match ends {
         [Some(low), Some(high)] => format!("{} to {}", shown(low), shown(high)),
         [None, Some(high)] => format!("at most {}", shown(high)),
@@ -134,8 +134,8 @@ mod tests {
     #[test]
     fn limits_in_words() {
         let unit = Unit { factor: 1e6, name: "ppm".into() };
-        assert_eq!(between([Some(-0.001), Some(0.0025)], &unit), "-1000 to 2500");
-        assert_eq!(between([None, Some(0.001)], &unit), "at most 1000");
-        assert_eq!(between([Some(-0.001), None], &unit), "at least -1000");
+        assert_eq!(between([Some(-0.001), Some(0.0025)], &unit, 7), "-1000 to 2500");
+        assert_eq!(between([None, Some(0.001)], &unit, 7), "at most 1000");
+        assert_eq!(between([Some(-0.001), None], &unit, 7), "at least -1000");
     }
 }

@@ -21,7 +21,7 @@ pub(super) fn conformity(page: &Page<'_>) -> Markup {
     }
     let rows: Vec<Vec<String>> = judged.iter().map(|q| row(Line::of(q, &page.units))).collect();
     let body = html! {
-        p { b { (status(&c.status).to_uppercase()) } ": " (typographic(&rule(c))) "." }
+        p { b { (status(&c.status).to_uppercase()) } ": " (rule(c)) "." }
         (table(
             "",
             "p: probability that the value conforms. Risk: probability that the decision is wrong. Rule, at most: largest \
