@@ -1,5 +1,6 @@
 //! What was measured, before anything is computed from it.
 
+use crate::decision::Specification;
 use crate::{Angle, ConverterEnds, Gravity, Quantizer, Readings, Record, SensorType};
 
 /// One sensor, one axis, one bench, one or more runs.
@@ -17,6 +18,8 @@ pub struct Experiment {
     pub runs: Vec<Run>,
     /// Largest expanded uncertainties that still serve.
     pub targets: Targets,
+    /// What the unit is held against; without limits nothing is.
+    pub specification: Specification,
 }
 
 /// The unit under calibration.

@@ -194,6 +194,10 @@ finding_kinds! {
     DwellsCutOut = "T0319", Note, "dwells were cut out of a continuous record";
     /// Dwells beyond the stated range of the table.
     AngleOutsideRange = "T0320", Warning, "dwells outside the table's stated range";
+    /// The tolerance is less than a few expanded uncertainties wide.
+    LowUncertaintyRatio = "T0401", Warning, "the uncertainty is large against the tolerance";
+    /// Guard bands of both sides meet.
+    NothingCouldPass = "T0402", Warning, "the guard bands leave no room to pass";
 }
 
 impl FindingKind {

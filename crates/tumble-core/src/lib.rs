@@ -8,6 +8,7 @@
 pub mod assess;
 mod blocks;
 mod compensator;
+pub mod decision;
 pub mod estimate;
 mod experiment;
 mod explanation;

@@ -162,13 +162,67 @@ pub(crate) enum Orientation {
     Reversed,
 }
 
-/// Targets: largest expanded uncertainties that still serve.
+/// Limits of a quantity: `[lowest, highest]`, or `x` for ±x.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum LimitsValue {
+    Around(f64),
+    Between([f64; 2]),
+}
+
+impl<'de> Deserialize<'de> for LimitsValue {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Visitor;
+
+        impl<'de> serde::de::Visitor<'de> for Visitor {
+            type Value = LimitsValue;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("limits as [lowest, highest], or one number x for -x to x")
+            }
+
+            fn visit_f64<E: serde::de::Error>(self, v: f64) -> Result<LimitsValue, E> {
+                Ok(LimitsValue::Around(v))
+            }
+
+            fn visit_i64<E: serde::de::Error>(self, v: i64) -> Result<LimitsValue, E> {
+                Ok(LimitsValue::Around(v as f64))
+            }
+
+            fn visit_seq<A: serde::de::SeqAccess<'de>>(
+                self,
+                seq: A,
+            ) -> Result<LimitsValue, A::Error> {
+                <[f64; 2]>::deserialize(serde::de::value::SeqAccessDeserializer::new(seq))
+                    .map(LimitsValue::Between)
+            }
+        }
+
+        deserializer.deserialize_any(Visitor)
+    }
+}
+
+/// Targets (largest expanded uncertainties that still serve), and limits that the unit is held against.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SpecTable {
     pub(crate) target_bias_m_s2: Option<f64>,
     pub(crate) target_misalignment_rad: Option<f64>,
     pub(crate) target_scale_error: Option<f64>,
+    pub(crate) specification: Option<String>,
+    pub(crate) decision_rule: Option<String>,
+    pub(crate) guard_band: Option<f64>,
+    pub(crate) bias_limits_m_s2: Option<LimitsValue>,
+    pub(crate) bias_limits_mg: Option<LimitsValue>,
+    pub(crate) misalignment_limits_rad: Option<LimitsValue>,
+    pub(crate) misalignment_limits_arcmin: Option<LimitsValue>,
+    pub(crate) scale_error_limits: Option<LimitsValue>,
+    pub(crate) scale_error_limits_percent: Option<LimitsValue>,
+    pub(crate) scale_error_limits_ppm: Option<LimitsValue>,
+    pub(crate) scale_factor_limits: Option<LimitsValue>,
+    pub(crate) prior_bias_m_s2: Option<[f64; 2]>,
+    pub(crate) prior_misalignment_rad: Option<[f64; 2]>,
+    pub(crate) prior_scale_error: Option<[f64; 2]>,
+    pub(crate) prior_scale_factor: Option<[f64; 2]>,
 }
 
 /// Parses `experiment.toml`.

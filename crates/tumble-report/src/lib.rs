@@ -12,6 +12,7 @@
 
 mod catalogue;
 mod check;
+mod conformity;
 mod explain;
 mod figure;
 mod html;

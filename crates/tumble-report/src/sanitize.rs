@@ -88,7 +88,7 @@ fn unreadable() -> Passport {
         verdict: "indeterminate".into(),
         reasons: Vec::new(),
         missing: vec!["a number in this passport is not finite: it cannot be shown".into()],
-        conformity: p::Conformity { status: "not_assessed".into() },
+        conformity: p::Conformity { status: "not_assessed".into(), ..p::Conformity::default() },
         sensor: p::Sensor { model: unknown(), serial: unknown(), axis: unknown(), kind: None },
         output: p::Output {
             quantizer: unknown(),

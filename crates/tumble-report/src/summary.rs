@@ -37,6 +37,7 @@ pub fn summary(passport: &Passport) -> String {
     out.push('\n');
     subject(&mut out, &p);
     numbers(&mut out, &p);
+    conformity(&mut out, &p);
     findings(&mut out, &p);
     // Ids of another version are not explained by this one.
     if let Some(kind) = p.findings.first().and_then(|f| FindingKind::from_id(&f.id)) {
@@ -186,6 +187,40 @@ fn table_repeats(out: &mut String, p: &Passport) {
         _ => return,
     };
     row(out, "table repeats", &text);
+}
+
+/// The decision on the unit, where limits were given: the whole, then each quantity.
+fn conformity(out: &mut String, p: &Passport) {
+    let c = &p.conformity;
+    let judged = crate::conformity::judged(p);
+    if let Some(reason) = c.reason.as_deref().filter(|_| judged.is_empty()) {
+        let lead = format!("\n  {:<width$}", "conformity", width = VALUES - 2);
+        out.push_str(&wrapped(
+            &lead,
+            &format!("not assessed: {}", one_line(reason)),
+            VALUES,
+            WIDTH,
+        ));
+    }
+    if judged.is_empty() {
+        return;
+    }
+    let lead = format!("\n  {:<width$}", "conformity", width = VALUES - 2);
+    let whole = format!(
+        "{} - {}",
+        crate::conformity::status(&c.status).to_uppercase(),
+        crate::conformity::rule(c)
+    );
+    out.push_str(&wrapped(&lead, &whole, VALUES, WIDTH));
+    let units = Units::of(p);
+    for q in judged {
+        let line = crate::conformity::Line::of(q, &units);
+        let risk = line.risk.map_or_else(String::new, |r| format!("; risk {r}"));
+        let text =
+            format!("{}: {} {}, limits {}{risk}", line.status, line.value, line.unit, line.limits);
+        let lead = format!("  {:<width$}", line.short_name, width = VALUES - 2);
+        out.push_str(&wrapped(&lead, &text, VALUES, WIDTH));
+    }
 }
 
 fn findings(out: &mut String, p: &Passport) {

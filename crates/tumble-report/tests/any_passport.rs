@@ -108,7 +108,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 96, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn one_text_everywhere(which in 0..5usize, text in hostile(), keep in any::<bool>()) {
+    fn one_text_everywhere(which in 0..6usize, text in hostile(), keep in any::<bool>()) {
         let passport = common::changed(&PASSPORTS[which], &mut |field, leaf| {
             if leaf.is_string() && !(keep && STEERING.contains(&field)) {
                 *leaf = Value::String(text.clone());
@@ -119,7 +119,7 @@ proptest! {
 
     #[test]
     fn a_text_of_its_own_in_every_field(
-        which in 0..5usize,
+        which in 0..6usize,
         texts in proptest::collection::vec(hostile(), 24),
         keep in any::<bool>(),
     ) {
@@ -134,7 +134,7 @@ proptest! {
 
     #[test]
     fn awkward_numbers(
-        which in 0..5usize,
+        which in 0..6usize,
         numbers in proptest::collection::vec(awkward_number(), 37),
         every in 1..40usize,
     ) {

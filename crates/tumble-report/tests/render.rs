@@ -52,6 +52,49 @@ fn accepted_shows_everything() {
 }
 
 #[test]
+fn conformity_is_shown_with_rule_and_risk() {
+    let p = common::held_against_limits();
+    assert_eq!((p.verdict.as_str(), p.conformity.status.as_str()), ("accepted", "fail"));
+    let text = summary(&p);
+    for words in [
+        "conformity    FAIL - non-binary rule, guard band 1 U (95 %)",
+        "  bias          fail: ",
+        "m/s², limits 4.903325 to 5.88399",
+        "  misalignment  pass: ",
+        "arcmin, limits at most 60; risk ",
+        "  scale factor  pass: ",
+    ] {
+        assert!(text.contains(words), "{words}\n{text}");
+    }
+    assert!(text.lines().all(|l| l.chars().count() <= 80), "{text}");
+    assert!(!text.contains('−'), "{text}");
+    let page = html(&p);
+    for words in [
+        "<h2>Conformity</h2>",
+        ": non-binary rule, guard band 1 U (95 %).",
+        "Acceptance limits",
+        "at most 60",
+        "Fail against data sheet: bias, misalignment, scale error and scale factor",
+        "Over a production of mean 0 and standard deviation 0.200 (scale error, 1): ",
+        "a unit out of its limits keeps its coefficients",
+        "from a Student distribution",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+    // A tampered passport: the verdict decides, not the presence of the numbers.
+    let mut tampered = p.clone();
+    tampered.verdict = "rejected".into();
+    assert!(!html(&tampered).contains("Acceptance limits"));
+    assert!(!summary(&tampered).contains("limits"));
+    // Limits that could not be judged are not passed over in silence; without limits nothing is said.
+    tampered.conformity.parameters.clear();
+    tampered.conformity.reason = Some("the calibration is rejected".into());
+    assert!(summary(&tampered).contains("conformity    not assessed: the calibration is rejected"));
+    assert!(html(&tampered).contains("Not assessed against the limits of [spec]"));
+    assert!(!summary(&common::accepted()).contains("conformity"));
+}
+
+#[test]
 fn rejected_shows_no_coefficients() {
     let p = common::rejected();
     assert_eq!(p.verdict, "rejected");

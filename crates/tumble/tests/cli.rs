@@ -434,3 +434,42 @@ fn data_on_standard_output_have_no_colour() {
         assert!(text.lines().all(|l| l.chars().count() <= 80), "{args:?}: {text}");
     }
 }
+
+#[test]
+fn limits_judge_the_unit_and_change_no_exit_code() {
+    let dir = demo(&["--seed", "3"]);
+    let at = dir.path();
+    let file = at.join("demo/experiment.toml");
+    let plain = std::fs::read_to_string(&file).unwrap();
+    let with = |lines: &str| std::fs::write(&file, format!("{plain}\n[spec]\n{lines}\n")).unwrap();
+    for (lines, words) in [
+        (
+            "bias_limits_mg = [900, 1000]",
+            "conformity    FAIL - guarded acceptance, guard band 1 U (95 %)",
+        ),
+        ("bias_limits_mg = 900", "conformity    PASS - guarded acceptance, guard band 1 U (95 %)"),
+        (
+            "scale_error_limits_percent = 90\ndecision_rule = \"simple\"",
+            "PASS - simple acceptance, no guard band",
+        ),
+    ] {
+        with(lines);
+        let o = tumble(at, &["certify", "demo"]);
+        assert_eq!(code(&o), 0, "{lines}: {}", err(&o));
+        assert!(out(&o).starts_with("ACCEPTED") && out(&o).contains(words), "{}", out(&o));
+    }
+    for (lines, key, remedy) in [
+        ("bias_limits_m_s2 = [1, -1]", "bias_limits_m_s2", "[lowest, highest]"),
+        ("bias_limits_m_s2 = \"25 mg\"", "limits", "[lowest, highest]"),
+        ("bias_limits = 1", "bias_limits", "did you mean"),
+        ("decision_rule = \"strict\"", "decision_rule", "\"guarded\""),
+    ] {
+        with(lines);
+        let o = tumble(at, &["certify", "demo"]);
+        let line = format!("line {}", plain.lines().count() + 3);
+        assert_eq!(code(&o), 2, "{lines}: {}", out(&o));
+        for text in ["experiment.toml", key, remedy, &line] {
+            assert!(err(&o).contains(text), "{lines}: no {text} in {}", err(&o));
+        }
+    }
+}

@@ -161,6 +161,12 @@ fn replaced(text: &str, from: &str, to: &str) -> String {
     text.replace(from, to)
 }
 
+/// Limits of everything, with everything that may be said about them.
+const SPEC: &str = "[spec]\nspecification = \"data sheet\"\nbias_limits_mg = 25\n\
+    misalignment_limits_arcmin = [-60, inf]\nscale_error_limits_percent = 4\n\
+    scale_factor_limits = [0.0074, 0.0080]\ndecision_rule = \"non-binary\"\nguard_band = 0.83\n\
+    prior_bias_m_s2 = [0.0, 0.08]\n";
+
 /// Passports of all verdicts, with names.
 fn passports() -> Vec<(String, Value)> {
     let short = Truth { runs: 2, ..truth() };
@@ -179,6 +185,7 @@ fn passports() -> Vec<(String, Value)> {
                     "angle_range_deg = [-65, 65]\nangle_uncertainty_arcmin",
                 );
                 let toml = replaced(&toml, "rate_hz", "min_code = -2048\nmax_code = 2047\nrate_hz");
+                let toml = format!("{toml}\n{SPEC}");
                 let remarks =
                     "mounting = \"A\"\ndate = 2026-03-01\noperator = \"N. N.\"\nnote = \"warm\"";
                 let toml = replaced(&toml, "mounting = \"A\"", remarks);
@@ -206,6 +213,19 @@ fn passports() -> Vec<(String, Value)> {
         (
             "nominal scale from up and down".to_owned(),
             simulated(&short, true, |toml| replaced(&toml, "nominal_scale", "# nominal_scale")),
+        ),
+        (
+            "limits and no result".to_owned(),
+            simulated(&short, false, |toml| {
+                let toml = replaced(&toml, "[bench]", "[bench]\nangle_sign = -1");
+                format!("{toml}\n{SPEC}")
+            }),
+        ),
+        (
+            "a tolerance below the uncertainty".to_owned(),
+            simulated(&truth(), false, |toml| {
+                format!("{toml}\n[spec]\nbias_limits_m_s2 = 1e-6\nscale_error_limits_ppm = 1\n")
+            }),
         ),
         ("one angle".to_owned(), averaged(&[(20.0, code(20.0)); 10], 1)),
         ("two angles".to_owned(), averaged(&[(-30.0, code(-30.0)), (30.0, code(30.0))], 1)),

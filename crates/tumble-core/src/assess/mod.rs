@@ -1,5 +1,6 @@
 //! From an experiment to a judged result: every stage once, in order.
 
+mod conformity;
 mod error_level;
 mod influence;
 mod pool;
@@ -7,6 +8,7 @@ mod repeat;
 mod result;
 mod verdict;
 
+pub use conformity::{Conformity, QuantityConformity, conformity};
 pub use error_level::{ErrorLevel, RunErrorLevel, error_level};
 pub use influence::{Influence, InfluenceTest, influence};
 pub use pool::{Interval, PooledParameter, in_lsb, pool, scale_factor};
@@ -14,6 +16,7 @@ pub use repeat::repeated_share;
 pub use result::{BudgetLine, CompensationResult, compensation_result};
 pub use verdict::{Verdict, may_carry_result, verdict};
 
+pub(crate) use conformity::LOW_TEST_UNCERTAINTY_RATIO;
 pub(crate) use influence::SIGNIFICANCE as INFLUENCE_SIGNIFICANCE;
 pub(crate) use repeat::LIMIT as REPEAT_LIMIT;
 pub(crate) use verdict::for_want_of_runs;
@@ -46,6 +49,8 @@ pub struct Assessment {
     pub budget: Vec<BudgetLine>,
     /// Coefficients; present when the verdict allows.
     pub compensation: Option<CompensationResult>,
+    /// The unit against its specification.
+    pub conformity: Conformity,
     /// Everything noteworthy, worst first.
     pub findings: Vec<Finding>,
     /// The verdict on the calibration.
@@ -167,6 +172,14 @@ pub fn assess(
             compensation_result(&pooled, &runs, experiment.output.quantizer, k0.value_m_s2_per_lsb)
         })
         .flatten();
+    let conformity = conformity(
+        &experiment.specification,
+        compensation.as_ref().map(|_| pooled.as_slice()),
+        k0.value_m_s2_per_lsb,
+        options.level,
+        verdict,
+    );
+    findings.extend(conformity.findings());
     // Worst first; within a severity in the order of discovery.
     findings.sort_by_key(|f| std::cmp::Reverse(f.kind.severity()));
     Ok(Assessment {
@@ -178,6 +191,7 @@ pub fn assess(
         error_level,
         budget,
         compensation,
+        conformity,
         findings,
         verdict,
     })

@@ -3,6 +3,7 @@
 //! Thresholds come from the constants that judge, so that a text cannot say another number than the code.
 
 mod bench;
+mod conformity;
 mod plan;
 mod record;
 mod values;
@@ -100,6 +101,8 @@ impl FindingKind {
             K::SettlingLeftOut => record::settling_left_out(),
             K::DwellsCutOut => record::dwells_cut_out(),
             K::AngleOutsideRange => bench::angle_outside_range(),
+            K::LowUncertaintyRatio => conformity::low_uncertainty_ratio(),
+            K::NothingCouldPass => conformity::nothing_could_pass(),
         }
     }
 

@@ -173,6 +173,7 @@ pub fn experiment(truth: &Truth) -> Experiment {
         vertical: None,
         runs,
         targets: Targets::default(),
+        specification: crate::decision::Specification::default(),
     }
 }
 

@@ -3,6 +3,7 @@
 //! Past 500 lines: runs and the up/down pair share the reader and its checks of paths; the pair is the next to move out.
 
 mod settings;
+mod spec;
 
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
@@ -128,6 +129,7 @@ fn read_parsed(
     }
     let output = output(&file.output)?;
     let bench = bench(&file.bench)?;
+    let specification = spec::specification(&file.spec)?;
     let names = run_names(&file.run)?;
     let mut inputs =
         vec![FileDigest { file: EXPERIMENT_FILE.into(), sha256: crate::digest::sha256(bytes) }];
@@ -184,6 +186,7 @@ fn read_parsed(
             vertical,
             runs,
             targets: targets(file)?,
+            specification,
         },
         id: file.id.clone(),
         issued,

@@ -34,7 +34,11 @@ pub fn build(
         verdict: assessment.verdict.name().into(),
         reasons: of("reject"),
         missing: of("missing"),
-        conformity: wire::Conformity { status: "not_assessed".into() },
+        conformity: super::conformity::conformity(
+            &assessment.conformity,
+            experiment.specification.name.as_deref(),
+            options.level,
+        ),
         sensor: wire::Sensor {
             model: experiment.sensor.model.clone(),
             serial: experiment.sensor.serial.clone(),

@@ -44,9 +44,71 @@ pub struct Passport {
     pub software: Software,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Conformity {
     pub status: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub specification: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rule: Option<String>,
+    /// In multiples of U.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub guard_band: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub level: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub statement: Option<String>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub parameters: Vec<ParameterConformity>,
+}
+
+/// One quantity against its limits.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ParameterConformity {
+    pub parameter: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mounting: Option<String>,
+    pub unit: String,
+    pub value: f64,
+    pub standard_uncertainty: f64,
+    pub expanded_uncertainty: f64,
+    /// `null`: infinite.
+    pub degrees_of_freedom: Option<f64>,
+    /// Lower and upper; `null`: open.
+    pub limits: [Option<f64>; 2],
+    /// `null`: the guard bands leave no room.
+    pub acceptance_limits: Option<[Option<f64>; 2]>,
+    pub status: String,
+    pub probability_of_conformity: f64,
+    /// `null`: not assessed.
+    pub risk: Option<f64>,
+    pub distribution: String,
+    pub worst_case_risk: WorstCaseRisk,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub test_uncertainty_ratio: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub production: Option<Production>,
+}
+
+/// Largest specific risks of the rule.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct WorstCaseRisk {
+    /// `null`: nothing could pass.
+    pub consumer: Option<f64>,
+    pub producer: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub conditional: Option<f64>,
+}
+
+/// Global risks over a production with a stated spread.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Production {
+    pub mean: f64,
+    pub standard_deviation: f64,
+    pub global_consumer_risk: f64,
+    pub global_producer_risk: f64,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -1,6 +1,7 @@
 //! The self-contained page: no script, nothing from outside, light and dark, A4.
 
 mod apply;
+mod conformity;
 mod evidence;
 mod findings;
 mod front;
@@ -59,6 +60,7 @@ pub fn html(passport: &Passport) -> String {
                 (front::front(&page))
                 main {
                     (result::result(&page))
+                    (conformity::conformity(&page))
                     (apply::apply(&page))
                     (evidence::figures(&page))
                     (evidence::error_level(&page))

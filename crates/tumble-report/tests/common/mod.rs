@@ -67,9 +67,21 @@ pub fn least() -> Passport {
     Passport::from_json(include_str!("../data/least.json")).unwrap()
 }
 
+/// Limits of everything: a bias that fails, a misalignment with one side open, a rule that answers with conditions.
+pub fn held_against_limits() -> Passport {
+    const SPEC: &str = "[spec]\nspecification = \"data sheet\"\nbias_limits_mg = [500, 600]\n\
+                misalignment_limits_arcmin = [-inf, 60]\nscale_error_limits_percent = 50\n\
+                scale_factor_limits = [0.001, 0.1]\ndecision_rule = \"non-binary\"\n\
+                prior_scale_error = [0.0, 0.2]\n";
+    static ONCE: LazyLock<Passport> = LazyLock::new(|| {
+        simulated("limits", &Preset::Paper3.truth(), |text| format!("{text}\n{SPEC}"))
+    });
+    ONCE.clone()
+}
+
 /// One of each kind.
 pub fn all() -> Vec<Passport> {
-    vec![accepted(), two_mountings(), rejected(), one_run(), least()]
+    vec![accepted(), two_mountings(), rejected(), one_run(), least(), held_against_limits()]
 }
 
 /// Changes every leaf of a passport; `path` is the name of the nearest field.
