@@ -27,6 +27,7 @@ pub mod simulate;
 pub mod stats;
 mod stillness;
 pub mod term;
+pub mod uncertainty;
 mod units;
 
 pub use blocks::BlockSums;
