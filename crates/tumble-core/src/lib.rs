@@ -7,6 +7,7 @@
 
 pub mod assess;
 mod blocks;
+pub mod combine;
 mod compensator;
 pub mod estimate;
 mod experiment;
