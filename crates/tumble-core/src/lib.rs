@@ -32,8 +32,8 @@ mod units;
 pub use blocks::BlockSums;
 pub use compensator::{Compensated, Compensator};
 pub use experiment::{
-    Bench, DEFAULT_VERTICAL_LEAN_ARCMIN, Experiment, Output, Position, Run, Seat, Sensor, Targets,
-    VerticalPair,
+    Bench, DEFAULT_VERTICAL_LEAN_ARCMIN, Experiment, Orientation, Output, PairUse, Position, Run,
+    Seat, Sensor, Targets, VerticalPair,
 };
 pub use explanation::Explanation;
 pub use finding::{Finding, FindingKind, Severity};

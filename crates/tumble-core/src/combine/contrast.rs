@@ -93,7 +93,7 @@ fn contrast(scaled: &Scaled, fitted: &Fitted, p: usize) -> Contrast {
             members.iter().map(|r| dot3(weights[*r], s.residuals[*r]).powi(2) / v[*r]).sum();
         (seen / expected, expected * expected / squares, Basis::Scatter)
     } else {
-        let own: f64 = scaled.units.iter().zip(&v).map(|(u, v)| v * v / u.dof).sum();
+        let own: f64 = scaled.units.iter().zip(&v).map(|(u, v)| v * v / u.dof[entry]).sum();
         (1.0, if own > 0.0 { total * total / own } else { f64::INFINITY }, Basis::Own)
     };
     Contrast {

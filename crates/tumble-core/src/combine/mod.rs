@@ -27,8 +27,8 @@ pub struct Unit {
     pub covariance: Symmetric3,
     /// `X_r`: for each entry the columns of `μ` that it is made of, with their coefficients.
     pub design: [Vec<(usize, f64)>; 3],
-    /// Degrees of freedom of the size of `C_r`; only used where the units' scatter says nothing.
-    pub dof: f64,
+    /// Degrees of freedom of the variances of `C_r`; only used where the units' scatter says nothing.
+    pub dof: [f64; 3],
 }
 
 /// Runs that cannot be put together.
@@ -93,7 +93,7 @@ pub struct Combined {
 ///     values: [Some(bias), None, None],
 ///     covariance: Symmetric3([[1e-6, 0.0, 0.0], [0.0; 3], [0.0; 3]]),
 ///     design: [vec![(0, 1.0)], vec![], vec![]],
-///     dof: 57.0,
+///     dof: [57.0; 3],
 /// };
 /// let together = combine(&[unit(0.010), unit(0.012), unit(0.017)], 1).unwrap();
 /// let bias = &together.columns[0];

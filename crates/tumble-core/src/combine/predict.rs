@@ -37,5 +37,8 @@ pub fn prediction(
     let total = column.ratio * (omega_squared + c);
     // Copies of one run scatter by nothing and say nothing of it.
     let between = if total > 0.0 { total * (total + c) / (total + 2.0 * c) } else { 0.0 };
-    Some(Prediction { next_estimate: t * (total + u2).sqrt(), next_true: t * (between + u2).sqrt() })
+    Some(Prediction {
+        next_estimate: t * (total + u2).sqrt(),
+        next_true: t * (between + u2).sqrt(),
+    })
 }

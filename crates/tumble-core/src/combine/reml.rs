@@ -20,7 +20,7 @@ pub(super) struct ScaledUnit {
     pub(super) columns: Vec<usize>,
     /// Coefficients: an entry's row over `columns`.
     pub(super) design: [Vec<f64>; 3],
-    pub(super) dof: f64,
+    pub(super) dof: [f64; 3],
 }
 
 /// All units with every entry over a typical standard deviation, so that `ω²` of order one is as large as `C`.
@@ -252,8 +252,7 @@ pub(super) fn fit(scaled: &Scaled) -> Result<Fitted, CombineError> {
     let mut solution = solve(scaled, omega2)?;
     let first = slope(scaled, &solution);
     let entries = |j: usize| scaled.units.iter().filter(|u| u.present[j]).count() as f64;
-    let free: [bool; 3] =
-        core::array::from_fn(|j| first.trace[j] > 1e-9 * entries(j).max(1.0));
+    let free: [bool; 3] = core::array::from_fn(|j| first.trace[j] > 1e-9 * entries(j).max(1.0));
     for j in (0..3).filter(|j| free[*j]) {
         // Away from zero, where the likelihood may be flat beside its maximum.
         omega2[j] = start(scaled, j);

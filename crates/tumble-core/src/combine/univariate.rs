@@ -83,9 +83,8 @@ fn weighted_misfit(y: &[f64], v: &[f64], groups: &[usize], count: usize, omega2:
         sums[*g].0 += w;
         sums[*g].1 += w * y;
     }
-    let part = |((y, v), g): ((&f64, &f64), &usize)| {
-        (y - sums[*g].1 / sums[*g].0).powi(2) / (v + omega2)
-    };
+    let part =
+        |((y, v), g): ((&f64, &f64), &usize)| (y - sums[*g].1 / sums[*g].0).powi(2) / (v + omega2);
     y.iter().zip(v).zip(groups).map(part).sum()
 }
 
