@@ -4,7 +4,21 @@
 
 #[path = "combine/answers.rs"]
 mod answers;
+#[path = "combine/bench.rs"]
+mod bench;
 #[path = "combine/coverage.rs"]
 mod coverage;
 #[path = "combine/oracle.rs"]
 mod oracle;
+#[path = "combine/pair.rs"]
+mod pair;
+#[path = "combine/reversal.rs"]
+mod reversal;
+#[path = "combine/sizes.rs"]
+mod sizes;
+#[path = "combine/study.rs"]
+mod study;
+
+fn long() -> bool {
+    std::env::var_os("TUMBLE_LONG").is_some()
+}

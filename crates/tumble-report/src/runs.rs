@@ -108,6 +108,7 @@ fn pooled<'p>(
 /// Whether the table's zero stands apart from the misalignment of a mounting: its runs were taken in both orientations.
 fn separated(passport: &Passport, mounting: Option<&str>) -> bool {
     let zero = standing::result(passport).is_some_and(|r| r.table_zero.is_some());
-    let turned = |name: &str| passport.runs.iter().any(|r| r.mounting == format!("{name} reversed"));
+    let turned =
+        |name: &str| passport.runs.iter().any(|r| r.mounting == format!("{name} reversed"));
     zero && mounting.is_some_and(|m| turned(m) || m.ends_with(" reversed"))
 }

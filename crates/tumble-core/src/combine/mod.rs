@@ -79,7 +79,8 @@ pub struct Combined {
 ///
 /// **Model** `V_r = C_r + Ω`, `μ̂ = Σ A_r θ̂_r`, `A_r = (Σ X'V⁻¹X)⁻¹ X_r' V_r⁻¹`. For column `p` let `a_r` be row `p` of `A_r`,
 /// `z_r = a_r·(θ̂_r − X_r μ̂)`, `v_r = a_r' V_r a_r`: then `u² = q Σ v_r`, `q = Σ z_r²/v_r / E[Σ z_r²/v_r]` over the units that
-/// have the parameter, with Satterthwaite's degrees of freedom. With equal `C_r` that is the mean, `s/√k` and `k − 1`.
+/// have the parameter, with Satterthwaite's degrees of freedom. With equal `C_r` that is the mean, `s/√k` and `k − 1`. A column with
+/// too few units to scatter (a mounting of one run) is estimated from its own entry alone, with the units' own variances.
 ///
 /// **Errors** [`CombineError`].
 ///
@@ -107,8 +108,7 @@ pub fn combine(units: &[Unit], columns: usize) -> Result<Combined, CombineError>
     }
     let scaled = Scaled::of(units, columns)?;
     let fitted: Fitted = reml::fit(&scaled)?;
-    let columns = contrast::contrasts(&scaled, &fitted);
-    let model = &fitted.solution.covariance;
+    let (columns, model) = contrast::contrasts(&scaled, &fitted)?;
     let mut covariance = Matrix::zeros(model.rows(), model.rows());
     for i in 0..model.rows() {
         for j in 0..model.rows() {
