@@ -126,12 +126,63 @@ pub struct Position {
 pub struct Run {
     /// Name, unique within the experiment.
     pub name: String,
-    /// Mounting; runs of one mounting share the misalignment.
+    /// Mounting; runs of one mounting share the misalignment, but for what turning the body does to it.
     pub mounting: String,
+    /// Which way the body was turned. Angles of the positions have it already.
+    pub orientation: Orientation,
     /// Positions in measured order.
     pub positions: Vec<Position>,
     /// Day of measurement, as given.
     pub date: Option<String>,
+}
+
+/// Which way the body is turned about the platform's normal.
+///
+/// **Model** `φ* = φ + ε + δ` normal, `φ* = −φ − ε + δ` reversed, `φ` the dial's angle after its sign and zero. `ε` belongs to
+/// the table (zero, level), `δ` turns with the body (seat, cross-axis sensitivity). Angles of a reversed run are `−φ`, so its
+/// misalignment is `δ − ε`, that of a normal one `δ + ε`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Orientation {
+    /// As drawn.
+    #[default]
+    Normal,
+    /// Turned by 180° about the platform's normal.
+    Reversed,
+}
+
+impl Orientation {
+    /// Sign of the table's zero `ε` in a run's misalignment.
+    ///
+    /// ```
+    /// use tumble_core::Orientation;
+    /// assert_eq!(Orientation::Reversed.sign(), -1.0);
+    /// ```
+    #[must_use]
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Normal => 1.0,
+            Self::Reversed => -1.0,
+        }
+    }
+
+    /// A mounting with its orientation, for people: `A`, `A reversed`.
+    #[must_use]
+    pub fn seating(self, mounting: &str) -> String {
+        match self {
+            Self::Normal => mounting.to_owned(),
+            Self::Reversed => format!("{mounting} reversed"),
+        }
+    }
+}
+
+/// What an up/down pair is used for that belongs to no run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum PairUse {
+    /// The nominal scale factor only.
+    #[default]
+    NominalScale,
+    /// Also, once, the joint adjustment of all runs, with a bias of its own.
+    JointAdjustment,
 }
 
 /// Dwells with the axis up and down.
@@ -141,8 +192,10 @@ pub struct VerticalPair {
     pub up: Position,
     /// Axis down.
     pub down: Position,
-    /// Name of the run in whose power-up they were taken. Without it they give the nominal scale only.
+    /// Name of the run in whose power-up they were taken.
     pub run: Option<String>,
+    /// What they are used for without one.
+    pub alone: PairUse,
 }
 
 /// Largest expanded uncertainties that still serve the user.

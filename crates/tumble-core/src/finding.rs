@@ -154,6 +154,12 @@ finding_kinds! {
     RunsTooFew = "T0210", Missing, "more runs are needed";
     /// The same errors in every run: the mean of runs does not average them out.
     ErrorsRepeat = "T0211", Warning, "the positions' errors repeat from run to run";
+    /// Cochran's Q is significant.
+    RunsDiffer = "T0212", Note, "the runs differ beyond their own uncertainties";
+    /// Runs in both orientations of a mounting.
+    ReversalSeparates = "T0213", Note, "reversal tells the table's zero from the misalignment";
+    /// A reversed run without its counterpart.
+    ReversalAlone = "T0214", Note, "reversed runs without a normal one in their mounting";
     /// Table better or worse than stated.
     TableWorse = "T0301", Warning, "the positions scatter more than the stated angle uncertainty";
     /// Table better than stated.

@@ -7,6 +7,7 @@
 
 pub mod assess;
 mod blocks;
+pub mod combine;
 mod compensator;
 pub mod decision;
 pub mod estimate;
@@ -33,8 +34,8 @@ mod units;
 pub use blocks::BlockSums;
 pub use compensator::{Compensated, Compensator};
 pub use experiment::{
-    Bench, DEFAULT_VERTICAL_LEAN_ARCMIN, Experiment, Output, Position, Run, Seat, Sensor, Targets,
-    VerticalPair,
+    Bench, DEFAULT_VERTICAL_LEAN_ARCMIN, Experiment, Orientation, Output, PairUse, Position, Run,
+    Seat, Sensor, Targets, VerticalPair,
 };
 pub use explanation::Explanation;
 pub use finding::{Finding, FindingKind, Severity};

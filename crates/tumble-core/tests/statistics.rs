@@ -207,6 +207,7 @@ fn a_shared_pair_in_every_run_would_ruin_the_coverage() {
             up: p.next().unwrap(),
             down: p.next().unwrap(),
             run: None,
+            alone: tumble_core::PairUse::NominalScale,
         });
         let with_pair = assess(&declared, &EstimateOptions::default()).unwrap();
         let without = assess(&honest, &EstimateOptions::default()).unwrap();

@@ -117,6 +117,7 @@ fn pooled(parameter: Parameter, value: f64, expanded: f64) -> PooledParameter {
         runs: 3,
         value,
         u_statistical: expanded / 2.0,
+        dof_statistical: 60.0,
         u_budget: 0.0,
         standard_uncertainty: expanded / 2.0,
         degrees_of_freedom: 60.0,
@@ -124,8 +125,12 @@ fn pooled(parameter: Parameter, value: f64, expanded: f64) -> PooledParameter {
         expanded_uncertainty: expanded,
         interval: Interval::around(value, expanded),
         prediction_interval: None,
+        prediction_true_interval: None,
         between_run_sd: None,
+        between_runs: None,
         intersection: None,
+        run_weights: Vec::new(),
+        pair_weight: 0.0,
     }
 }
 
@@ -145,6 +150,7 @@ fn judged(u: &Unit) -> Vec<Finding> {
     let runs = [RunAssessment {
         name: "run-1".into(),
         mounting: "A".into(),
+        orientation: tumble_core::Orientation::Normal,
         estimate: None,
         mean_codes: Vec::new(),
         temperatures_degc: Vec::new(),

@@ -94,6 +94,7 @@ pub fn check(folder: &Path, watch: &dyn Watch) -> Result<Check, ReadError> {
         let upright = Run {
             name: "up/down".into(),
             mounting: pair.run.clone().unwrap_or_default(),
+            orientation: tumble_core::Orientation::Normal,
             positions: vec![pair.up.clone(), pair.down.clone()],
             date: None,
         };
@@ -131,7 +132,7 @@ fn run(e: &Experiment, run: &Run) -> CheckedRun {
         .collect();
     CheckedRun {
         name: run.name.clone(),
-        mounting: run.mounting.clone(),
+        mounting: run.orientation.seating(&run.mounting),
         dwells,
         offset: look.as_ref().map(|l| l.offset),
         amplitude: look.as_ref().map(|l| l.amplitude),

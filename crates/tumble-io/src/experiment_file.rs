@@ -122,6 +122,8 @@ pub(crate) struct ScaleTable {
     pub(crate) rows: BTreeMap<String, String>,
     pub(crate) discard_s: Option<DiscardValue>,
     pub(crate) run: Option<String>,
+    /// Enter the joint adjustment of all runs once.
+    pub(crate) joint: Option<bool>,
 }
 
 #[derive(Debug, Clone, Deserialize)]

@@ -80,7 +80,9 @@ fn dial_sign_zero_and_orientation() {
         &format!("{TOML}orientation = \"reversed\"\nmounting = \"B\"\n"),
         "angle_deg,code\n30,1\n",
     );
-    assert_eq!((dwells(&f)[0].0, f.experiment.runs[0].mounting.as_str()), (-30.0, "B reversed"));
+    let run = &f.experiment.runs[0];
+    let seating = run.orientation.seating(&run.mounting);
+    assert_eq!((dwells(&f)[0].0, seating.as_str()), (-30.0, "B reversed"));
 }
 
 #[test]

@@ -91,6 +91,10 @@ fn pooled<'p>(
     mounting: Option<&str>,
 ) -> Option<&'p Estimate> {
     let result = standing::result(passport)?;
+    if parameter == Parameter::Misalignment && separated(passport, mounting) {
+        // The runs show it with the table's zero, the result without.
+        return None;
+    }
     match parameter {
         Parameter::Bias => Some(&result.bias),
         Parameter::ScaleError => Some(&result.scale_error),
@@ -99,4 +103,12 @@ fn pooled<'p>(
             Some(name) => result.mountings.iter().find(|m| m.name == name).map(|m| &m.misalignment),
         },
     }
+}
+
+/// Whether the table's zero stands apart from the misalignment of a mounting: its runs were taken in both orientations.
+fn separated(passport: &Passport, mounting: Option<&str>) -> bool {
+    let zero = standing::result(passport).is_some_and(|r| r.table_zero.is_some());
+    let turned =
+        |name: &str| passport.runs.iter().any(|r| r.mounting == format!("{name} reversed"));
+    zero && mounting.is_some_and(|m| turned(m) || m.ends_with(" reversed"))
 }

@@ -121,6 +121,9 @@ fn numbers(out: &mut String, p: &Passport) {
             &format!("{misalignment:<31}   (mounting {})", shortened(&m.name, 16)),
         );
     }
+    if let Some(zero) = &r.table_zero {
+        line(out, "table zero", Parameter::Misalignment, zero);
+    }
     line(out, "scale error", Parameter::ScaleError, &r.scale_error);
     row(out, "scale factor", &value(&r.scale_factor, &units.scale_factor));
     if let Some([low, high]) = r.bias.prediction_interval {
@@ -128,6 +131,13 @@ fn numbers(out: &mut String, p: &Passport) {
             out,
             "next power-up",
             &format!("bias estimate between {} m/s²", interval(low, high).replace(" to ", " and ")),
+        );
+    }
+    if let Some([low, high]) = r.bias.prediction_true_interval {
+        row(
+            out,
+            "",
+            &format!("true bias between {} m/s²", interval(low, high).replace(" to ", " and ")),
         );
     }
     if let Some(e) = &p.error_level_lsb {

@@ -101,7 +101,9 @@ pub fn error_level(runs: &[RunAssessment], setting: &Setting<'_>) -> Option<Erro
             let values: Vec<f64> = full
                 .iter()
                 .enumerate()
-                .filter(|(j, (r, _, _))| *j != i && (!same_mounting || r.mounting == run.mounting))
+                .filter(|(j, (r, _, _))| {
+                    *j != i && (!same_mounting || r.seating() == run.seating())
+                })
                 .map(|(_, (_, _, t))| t[index])
                 .collect();
             mean(&values)

@@ -3,15 +3,20 @@
 mod conformity;
 mod error_level;
 mod influence;
+mod pair;
 mod pool;
 mod repeat;
 mod result;
+mod units;
 mod verdict;
 
 pub use conformity::{Conformity, QuantityConformity, conformity};
 pub use error_level::{ErrorLevel, RunErrorLevel, error_level};
 pub use influence::{Influence, InfluenceTest, influence};
-pub use pool::{Interval, PooledParameter, in_lsb, pool, scale_factor};
+pub use pair::{SharedPair, shared_pair};
+pub use pool::{
+    BetweenRuns, Interval, PooledParameter, PooledRuns, in_lsb, pool, pool_runs, scale_factor,
+};
 pub use repeat::repeated_share;
 pub use result::{BudgetLine, CompensationResult, compensation_result};
 pub use verdict::{Verdict, may_carry_result, verdict};
@@ -27,7 +32,8 @@ use crate::estimate::{
 use crate::judge::{self, Structure};
 use crate::nominal::{NominalScale, NominalScaleError, nominal_scale};
 use crate::{
-    Experiment, Finding, FindingKind, GravitySource, Position, Run, STANDARD_GRAVITY_M_S2,
+    Experiment, Finding, FindingKind, GravitySource, Orientation, PairUse, Position, Run,
+    STANDARD_GRAVITY_M_S2,
 };
 
 /// Everything that is known about an experiment after it was judged.
@@ -39,6 +45,10 @@ pub struct Assessment {
     pub runs: Vec<RunAssessment>,
     /// Runs together, a parameter (and mounting) each.
     pub pooled: Vec<PooledParameter>,
+    /// `ε`: zero and level of the table, where reversal tells them from what turns with the body.
+    pub table_zero: Option<PooledParameter>,
+    /// An up/down pair that entered the joint adjustment.
+    pub shared_pair: Option<SharedPair>,
     /// Curvature left over.
     pub structure: Option<Structure>,
     /// Temperature and signal level.
@@ -64,6 +74,8 @@ pub struct RunAssessment {
     pub name: String,
     /// Its mounting.
     pub mounting: String,
+    /// Which way the body was turned.
+    pub orientation: Orientation,
     /// Absent when nothing could be adjusted.
     pub estimate: Option<Estimate>,
     /// Mean readings of the positions that were used, LSB, in measured order; `None` where codes stood at the
@@ -76,6 +88,12 @@ pub struct RunAssessment {
 }
 
 impl RunAssessment {
+    /// Mounting and orientation, for people: `A`, `A reversed`.
+    #[must_use]
+    pub fn seating(&self) -> String {
+        self.orientation.seating(&self.mounting)
+    }
+
     /// Residuals of the run; empty when nothing could be adjusted.
     #[must_use]
     pub fn residuals(&self) -> &[Residual] {
@@ -137,9 +155,17 @@ pub fn assess(
     }
     judge::some_runs_reversed(&mut findings, &experiment.runs);
 
-    let pooled = pool(&runs, gravity, options.level);
+    let shared_pair = match options.method {
+        // It knows the pair for k0 alone.
+        crate::estimate::Method::Paper => None,
+        _ => shared_pair(experiment, &setting, &runs),
+    };
+    let together = pool_runs(&runs, shared_pair.as_ref(), gravity, options.level);
+    let pooled = together.parameters.clone();
     let contradicted = findings.iter().any(|f| f.kind.severity() == crate::Severity::Reject);
     findings.extend(judge::reproducible(&experiment.runs, &pooled));
+    findings.extend(judge::runs_differ(&pooled));
+    findings.extend(judge::reversal(&runs, &together));
     if !contradicted {
         findings.extend(judge::determined_result(
             &pooled,
@@ -169,7 +195,12 @@ pub fn assess(
     let budget = result::budget(&pooled, gravity);
     let compensation = may_carry_result(&findings)
         .then(|| {
-            compensation_result(&pooled, &runs, experiment.output.quantizer, k0.value_m_s2_per_lsb)
+            compensation_result(
+                &together,
+                &runs,
+                experiment.output.quantizer,
+                k0.value_m_s2_per_lsb,
+            )
         })
         .flatten();
     let conformity = conformity(
@@ -186,6 +217,8 @@ pub fn assess(
         nominal_scale: k0,
         runs,
         pooled,
+        table_zero: together.table_zero,
+        shared_pair,
         structure,
         influence,
         error_level,
@@ -207,6 +240,7 @@ fn adjusted_runs(experiment: &Experiment) -> Vec<(Run, Vec<&Position>)> {
                 let run = Run {
                     name: "up/down".into(),
                     mounting: "up/down".into(),
+                    orientation: Orientation::Normal,
                     positions: vec![p.up.clone(), p.down.clone()],
                     date: None,
                 };
@@ -274,6 +308,7 @@ fn assess_run(
     RunAssessment {
         name: run.name.clone(),
         mounting: run.mounting.clone(),
+        orientation: run.orientation,
         estimate,
         mean_codes: positions
             .iter()
@@ -415,7 +450,8 @@ fn gravity_findings(experiment: &Experiment) -> Vec<Finding> {
 
 fn pair_findings(experiment: &Experiment) -> Option<Finding> {
     let pair = experiment.vertical.as_ref()?;
-    (pair.run.is_none() && !experiment.runs.is_empty()).then(|| Finding {
+    let apart = pair.run.is_none() && pair.alone == PairUse::NominalScale;
+    (apart && !experiment.runs.is_empty()).then(|| Finding {
         kind: FindingKind::PairForScaleOnly,
         place: "[scale]".into(),
         observed: "up and down belong to no run".into(),

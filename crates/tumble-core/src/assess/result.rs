@@ -1,7 +1,7 @@
 //! Coefficients for use, and the budget of what scatter does not show.
 
 use super::pool::gravity_sensitivity;
-use super::{PooledParameter, RunAssessment};
+use super::{PooledParameter, PooledRuns, RunAssessment};
 use crate::estimate::Parameter;
 use crate::linalg::Matrix;
 use crate::{Gravity, Quantizer, QuantizerOffset};
@@ -37,10 +37,6 @@ pub(super) fn budget(pooled: &[PooledParameter], gravity: &Gravity) -> Vec<Budge
     for p in pooled {
         // Copies of one run scatter by nothing; then nothing has a share in it.
         let share = |u: f64| if u > 0.0 { (u / p.standard_uncertainty).powi(2) } else { 0.0 };
-        let scatter_dof = match p.between_run_sd {
-            Some(_) => (p.runs - 1) as f64,
-            None => p.degrees_of_freedom,
-        };
         lines.push(BudgetLine {
             parameter: p.parameter,
             mounting: p.mounting.clone(),
@@ -48,7 +44,7 @@ pub(super) fn budget(pooled: &[PooledParameter], gravity: &Gravity) -> Vec<Budge
             standard_uncertainty: p.u_statistical,
             unit: p.parameter.unit(),
             distribution: "student",
-            degrees_of_freedom: scatter_dof,
+            degrees_of_freedom: p.dof_statistical,
             sensitivity: 1.0,
             contribution: p.u_statistical,
             share: share(p.u_statistical),
@@ -100,29 +96,30 @@ pub struct CompensationResult {
 
 /// Coefficients from the pooled values; `None` where one is missing.
 ///
-/// **Uncertainty** variances are those of the pooled values. Correlations are those of the runs' own covariances,
-/// thinned by the spread between runs: with few runs the sample correlation of the run values says nothing (two
-/// runs always give ±1).
+/// **Uncertainty** variances are those of the pooled values. Correlations are those of the joint adjustment: of the runs' own
+/// covariances, thinned by the spread between runs. With few runs the sample correlation of the run values says nothing
+/// (two runs always give ±1).
 #[must_use]
 pub fn compensation_result(
-    pooled: &[PooledParameter],
+    together: &PooledRuns,
     runs: &[RunAssessment],
     quantizer: Quantizer,
     nominal_scale_m_s2_per_lsb: f64,
 ) -> Option<CompensationResult> {
     let find = |parameter| {
-        let mut all = pooled.iter().filter(|p| p.parameter == parameter);
+        let mut all = together.parameters.iter().filter(|p| p.parameter == parameter);
         Some((all.next()?, all.next().is_none()))
     };
     let (bias, _) = find(Parameter::Bias)?;
     let (misalignment, one_mounting) = find(Parameter::Misalignment)?;
     let (scale, _) = find(Parameter::ScaleError)?;
     let u = [bias, misalignment, scale].map(|p| p.standard_uncertainty);
-    let correlation = correlations(pooled, runs);
+    let scatter = together.covariance.as_ref()?;
     let mut covariance = Matrix::zeros(3, 3);
     for i in 0..3 {
         for j in 0..3 {
-            covariance[(i, j)] = u[i] * u[j] * correlation[(i, j)];
+            let r = if i == j { 1.0 } else { scatter.correlation(i, j).unwrap_or(0.0) };
+            covariance[(i, j)] = u[i] * u[j] * r;
         }
     }
     let k = nominal_scale_m_s2_per_lsb;
@@ -146,32 +143,4 @@ pub fn compensation_result(
         reading_std_lsb: crate::stats::mean(&variances).map(f64::sqrt),
         example: (code as i32, acceleration),
     })
-}
-
-/// Correlations of the pooled parameters: mean of the runs' covariances, plus the spread between runs on the
-/// diagonal.
-fn correlations(pooled: &[PooledParameter], runs: &[RunAssessment]) -> Matrix {
-    let own: Vec<&Matrix> = runs
-        .iter()
-        .filter_map(|r| r.estimate.as_ref().and_then(|e| e.covariance.as_ref()))
-        .collect();
-    let n = own.len().max(1) as f64;
-    let mut c = Matrix::zeros(3, 3);
-    for i in 0..3 {
-        for j in 0..3 {
-            c[(i, j)] = own.iter().map(|m| m[(i, j)]).sum::<f64>() / n;
-        }
-    }
-    for p in pooled {
-        let i = p.parameter.index();
-        let spread = p.between_run_sd.map_or(0.0, |s| s * s);
-        c[(i, i)] = c[(i, i)].max(spread);
-    }
-    let mut r = Matrix::zeros(3, 3);
-    for i in 0..3 {
-        for j in 0..3 {
-            r[(i, j)] = if i == j { 1.0 } else { c.correlation(i, j).unwrap_or(0.0) };
-        }
-    }
-    r
 }

@@ -6,6 +6,7 @@ mod bench;
 mod conformity;
 mod plan;
 mod record;
+mod runs;
 mod values;
 
 use crate::assess::for_want_of_runs;
@@ -81,6 +82,9 @@ impl FindingKind {
             K::FewRuns => plan::few_runs(),
             K::RunsTooFew => plan::runs_too_few(),
             K::ErrorsRepeat => plan::errors_repeat(),
+            K::RunsDiffer => runs::runs_differ(),
+            K::ReversalSeparates => runs::reversal_separates(),
+            K::ReversalAlone => runs::reversal_alone(),
             K::TableWorse => bench::table_worse(),
             K::TableBetter => bench::table_better(),
             K::NearCodeZero => bench::near_code_zero(),

@@ -104,7 +104,7 @@ pub(super) fn empty_intersection() -> Explanation {
     Explanation::new(
         "Each run has an interval for this value, and no single number lies in all of them.",
         "The runs differ by more than their own uncertainties: the unit changes between power-ups or mountings. The \
-         result holds that spread already. With a spread as large as a run's own uncertainty, 26 of 100 honest series of \
+         result holds that spread already. With a spread as large as a run's own uncertainty, 28 of 100 honest series of \
          five runs look like this.",
         "To find the cause, compare temperature, warm-up and mounting of the runs. If each run was mounted anew, give \
          each its own `mounting = \"B\"`. Otherwise nothing: use the interval for the next power-up.",

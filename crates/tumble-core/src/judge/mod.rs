@@ -18,6 +18,7 @@ mod settled;
 mod slip;
 mod structure;
 mod table;
+mod together;
 mod type_limits;
 mod unit;
 mod upright;
@@ -33,6 +34,7 @@ pub use run_hygiene::{Hygiene, data_hygiene};
 pub use settled::settled;
 pub use structure::{Structure, structure};
 pub use table::{noise, slow_noise, table};
+pub use together::{reversal, runs_differ};
 pub use type_limits::{Judged, type_limits};
 
 /// Thresholds that the explanations name, so that text and judgement cannot drift apart.
@@ -58,6 +60,7 @@ pub(crate) mod limits {
         HOPELESS_DEG, LITTLE_DITHER_LSB2, NOTEWORTHY_FACTOR, SIGNIFICANCE as TABLE_SIGNIFICANCE,
         SLOW_NOISE,
     };
+    pub(crate) use super::together::DIFFER;
     pub(crate) use super::unit::{CODES_PER_G, FACTOR as UNIT_FACTOR};
     pub(crate) use super::wrap::BETTER as WRAP_BETTER;
     pub(crate) use super::zero_rows::{DOES_NOT_FIT, DOES_NOT_FIT_LSB};

@@ -5,8 +5,8 @@ use rand_pcg::Pcg64;
 
 use super::Truth;
 use crate::{
-    Bench, BlockSums, Code, CodeHistogram, Dial, Experiment, Gravity, GravitySource, Output,
-    Position, Quantizer, Readings, Record, Run, Sensor, Targets, ValueMoments,
+    Bench, BlockSums, Code, CodeHistogram, Dial, Experiment, Gravity, GravitySource, Orientation,
+    Output, Position, Quantizer, Readings, Record, Run, Sensor, Targets, ValueMoments,
 };
 
 /// One simulated dwell.
@@ -147,6 +147,7 @@ pub fn experiment(truth: &Truth) -> Experiment {
         .map(|r| Run {
             name: format!("run-{}", r + 1),
             mounting: "A".into(),
+            orientation: Orientation::Normal,
             positions: simulate_run(truth, r)
                 .positions
                 .iter()

@@ -10,8 +10,8 @@ use std::path::{Component, Path, PathBuf};
 use std::thread;
 
 use tumble_core::{
-    Angle, Bench, Experiment, Finding, FindingKind, Output, Position, Readings, Record, Run, Seat,
-    Sensor, VerticalPair,
+    Angle, Bench, Experiment, Finding, FindingKind, Output, PairUse, Position, Readings, Record,
+    Run, Seat, Sensor, VerticalPair,
 };
 
 use crate::catalogue::{CATALOGUE_FILE, Catalogue, UserCatalogue};
@@ -387,10 +387,11 @@ impl Reader<'_> {
         let mounting = table.mounting.clone().unwrap_or_else(|| "A".into());
         let run = Run {
             name: name.to_owned(),
+            mounting,
             // Turned by 180°, what belongs to the seat changes its sign against what belongs to the table.
-            mounting: match table.orientation {
-                Orientation::Normal => mounting,
-                Orientation::Reversed => format!("{mounting} reversed"),
+            orientation: match table.orientation {
+                Orientation::Normal => tumble_core::Orientation::Normal,
+                Orientation::Reversed => tumble_core::Orientation::Reversed,
             },
             positions,
             date: table.date.as_ref().map(experiment_file::date_text),
@@ -486,6 +487,14 @@ impl Reader<'_> {
                 problem: Problem::RunName { name: run.clone(), known: names.to_vec() },
             });
         }
+        let alone = match (scale.joint, &scale.run) {
+            (Some(true), Some(_)) => {
+                let expected = "run or joint = true, not both: a pair enters once";
+                return Err(value("[scale] joint", "given beside run", expected));
+            }
+            (Some(true), None) => PairUse::JointAdjustment,
+            _ => PairUse::NominalScale,
+        };
         let asked = self.asked(&scale.columns, &scale.rows, scale.discard_s.as_ref(), None)?;
         let mut dwell = |seat: Seat| {
             let (key, file, mean, samples, std) = match seat {
@@ -535,7 +544,8 @@ impl Reader<'_> {
             let angle = Angle::from_deg(if seat == Seat::Down { -90.0 } else { 90.0 });
             Ok(Position { angle, seat, readings, temperature_degc, place, record })
         };
-        Ok(VerticalPair { up: dwell(Seat::Up)?, down: dwell(Seat::Down)?, run: scale.run.clone() })
+        let (up, down) = (dwell(Seat::Up)?, dwell(Seat::Down)?);
+        Ok(VerticalPair { up, down, run: scale.run.clone(), alone })
     }
 }
 

@@ -205,7 +205,17 @@ fn pooled(p: &PooledParameter, k0: f64, level: f64) -> wire::Estimate {
         level: Some(level),
         interval: Some(pair(p.interval)),
         prediction_interval: p.prediction_interval.map(pair),
+        prediction_true_interval: p.prediction_true_interval.map(pair),
         between_run_sd: p.between_run_sd,
+        between_runs: p.between_runs.map(|b| wire::BetweenRuns {
+            omega: b.omega,
+            omega_mandel_paule: b.omega_mandel_paule,
+            omega_interval: b.omega_interval,
+            cochran_q: b.cochran_q,
+            degrees_of_freedom: b.dof,
+            p_value: b.p_value,
+            i_squared: b.i_squared,
+        }),
         intersection_of_runs: p.intersection.map(pair),
     }
 }
@@ -236,6 +246,12 @@ fn result(a: &Assessment, level: f64) -> Option<wire::ResultSection> {
                 })
                 .collect(),
         },
+        table_zero: a.table_zero.as_ref().map(|z| pooled(z, k0, level)),
+        shared_pair: a.shared_pair.map(|p| wire::SharedPair {
+            scale_error: p.scale_error,
+            standard_uncertainty: p.standard_uncertainty,
+            lean_correction: p.lean_correction,
+        }),
         scale_error: pooled(scale, k0, level),
         scale_factor,
         covariance: compensation.parameter_covariance.as_ref().map(three),
@@ -274,7 +290,7 @@ fn run(
     let measured = folder.experiment.runs.get(index);
     wire::Run {
         name: r.name.clone(),
-        mounting: r.mounting.clone(),
+        mounting: r.seating(),
         date: measured.and_then(|m| m.date.clone()),
         operator: remark.operator,
         note: remark.note,

@@ -185,10 +185,36 @@ pub struct Estimate {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub prediction_interval: Option<[f64; 2]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub prediction_true_interval: Option<[f64; 2]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub between_run_sd: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub between_runs: Option<BetweenRuns>,
     /// What the runs' intervals have in common: a picture of agreement, never the result.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub intersection_of_runs: Option<[f64; 2]>,
+}
+
+/// Spread between power-ups beyond the runs' own uncertainties.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BetweenRuns {
+    /// `null`: no two runs share the parameter.
+    pub omega: Option<f64>,
+    pub omega_mandel_paule: f64,
+    /// The upper end is `null` where the runs set none.
+    pub omega_interval: (f64, Option<f64>),
+    pub cochran_q: f64,
+    pub degrees_of_freedom: f64,
+    pub p_value: f64,
+    pub i_squared: f64,
+}
+
+/// An up/down pair in the joint adjustment.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SharedPair {
+    pub scale_error: f64,
+    pub standard_uncertainty: f64,
+    pub lean_correction: f64,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -198,6 +224,12 @@ pub struct ResultSection {
     pub misalignment: Option<Estimate>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub mountings: Vec<Mounting>,
+    /// Where reversal tells it from the misalignment.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub table_zero: Option<Estimate>,
+    /// Where a pair entered the joint adjustment.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shared_pair: Option<SharedPair>,
     pub scale_error: Estimate,
     pub scale_factor: Estimate,
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -40,7 +40,7 @@ pub(super) fn result(page: &Page<'_>) -> Markup {
             "",
             &format!("What the uncertainty is made of, and what the next power-up may bring ({level})."),
             &[text("Parameter"), numbers("u, statistical"), numbers("u, budget"), numbers("sd between runs"),
-              numbers("Next estimate"), units("Unit")],
+              numbers("ω between power-ups"), numbers("Next estimate"), numbers("Next true value"), units("Unit")],
             &parts,
         ))
         (prediction_note(result))
@@ -63,6 +63,9 @@ fn lines<'p>(page: &Page<'p>, result: &'p ResultSection) -> Vec<Line<'p>> {
     for m in &result.mountings {
         let name = format!("Misalignment Δφ ({})", shortened(&m.name, 16));
         out.push(line(name, &m.misalignment, Parameter::Misalignment));
+    }
+    if let Some(zero) = &result.table_zero {
+        out.push(line("Table zero ε".into(), zero, Parameter::Misalignment));
     }
     out.push(line("Scale error δk".into(), &result.scale_error, Parameter::ScaleError));
     out.push(Line {
@@ -121,16 +124,18 @@ fn row(l: &Line<'_>) -> Vec<String> {
 fn parts_row(l: &Line<'_>) -> Vec<String> {
     let e = l.estimate;
     let short = |v: Option<f64>| maybe(v.map(|v| l.unit.of(v)), 2);
-    let next = e
-        .prediction_interval
-        .map(|[lo, hi]| typographic(&interval(l.unit.of(lo), l.unit.of(hi))))
-        .unwrap_or_else(|| NONE.into());
+    let next = |ends: Option<[f64; 2]>| {
+        ends.map(|[lo, hi]| typographic(&interval(l.unit.of(lo), l.unit.of(hi))))
+            .unwrap_or_else(|| NONE.into())
+    };
     vec![
         l.name.clone(),
         short(e.u_statistical),
         short(e.u_budget),
         short(e.between_run_sd),
-        next,
+        short(e.between_runs.as_ref().and_then(|b| b.omega)),
+        next(e.prediction_interval),
+        next(e.prediction_true_interval),
         l.unit.name.clone(),
     ]
 }
@@ -140,8 +145,13 @@ fn prediction_note(result: &ResultSection) -> Markup {
         @if result.bias.prediction_interval.is_some() {
             p .small {
                 "“Next estimate” is the prediction interval for the next estimate: what another power-up, measured and \
-                 adjusted like these runs, will give. It is not an interval for the sensor's true value in that power-up, and \
-                 it is wider than ± U, which holds for the mean over power-ups."
+                 adjusted like these runs, will give. "
+                @if result.bias.prediction_true_interval.is_some() {
+                    "“Next true value” is for the sensor's true value in the next power-up: the spread between power-ups (ω) \
+                     without a run's own uncertainty. It is the one to start a navigation filter with; where ω is small against \
+                     a run's own uncertainty it is on the safe side. "
+                }
+                "Both are wider than ± U, which holds for the mean over power-ups."
             }
         } @else {
             p .small {
