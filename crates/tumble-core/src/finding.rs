@@ -200,6 +200,10 @@ finding_kinds! {
     DwellsCutOut = "T0319", Note, "dwells were cut out of a continuous record";
     /// Dwells beyond the stated range of the table.
     AngleOutsideRange = "T0320", Warning, "dwells outside the table's stated range";
+    /// Defaults make up a good part of an uncertainty.
+    BudgetAssumed = "T0328", Note, "a good part of the uncertainty is assumed";
+    /// Monte Carlo does not confirm an interval.
+    IntervalsDiffer = "T0329", Note, "Monte Carlo gives another interval";
     /// The tolerance is less than a few expanded uncertainties wide.
     LowUncertaintyRatio = "T0401", Warning, "the uncertainty is large against the tolerance";
     /// Guard bands of both sides meet.

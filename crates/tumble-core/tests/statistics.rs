@@ -146,7 +146,7 @@ fn pooled_coverage(n: usize, between: f64) -> Coverage {
             let s2: f64 = chi.sample(&mut rng) / 57.0;
             e.covariance.as_mut().unwrap()[(0, 0)] = s2;
         }
-        let p = pool(&runs, &gravity, 0.95);
+        let p = pool(&runs, 0.95);
         let bias = p.iter().find(|p| p.parameter == Parameter::Bias).unwrap();
         let holds = |i: tumble_core::assess::Interval, v: f64| i.low <= v && v <= i.high;
         inside += usize::from(bias.intersection.is_some_and(|i| holds(i, 0.0)));

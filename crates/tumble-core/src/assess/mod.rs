@@ -1,6 +1,8 @@
 //! From an experiment to a judged result: every stage once, in order.
 
+mod budget;
 mod conformity;
+mod drawn;
 mod error_level;
 mod influence;
 mod pair;
@@ -18,7 +20,9 @@ pub use pool::{
     BetweenRuns, Interval, PooledParameter, PooledRuns, in_lsb, pool, pool_runs, scale_factor,
 };
 pub use repeat::repeated_share;
-pub use result::{BudgetLine, CompensationResult, compensation_result};
+pub use budget::BudgetLine;
+pub use drawn::Drawn;
+pub use result::{CompensationResult, compensation_result};
 pub use verdict::{Verdict, may_carry_result, verdict};
 
 pub(crate) use conformity::LOW_TEST_UNCERTAINTY_RATIO;
@@ -30,6 +34,7 @@ use crate::estimate::{
     Estimate, EstimateOptions, Residual, Setting, Weights, determines_all, estimate,
 };
 use crate::judge::{self, Structure};
+use crate::systematic::{Inputs, SystematicEffect, effects};
 use crate::nominal::{NominalScale, NominalScaleError, nominal_scale};
 use crate::{
     Experiment, Finding, FindingKind, GravitySource, Orientation, PairUse, Position, Run,
@@ -57,6 +62,8 @@ pub struct Assessment {
     pub error_level: Option<ErrorLevel>,
     /// Uncertainty that does not show in the scatter.
     pub budget: Vec<BudgetLine>,
+    /// The pooled values drawn by Monte Carlo; empty where no result may be given, or none was asked for.
+    pub drawn: Vec<Drawn>,
     /// Coefficients; present when the verdict allows.
     pub compensation: Option<CompensationResult>,
     /// The unit against its specification.
@@ -85,6 +92,8 @@ pub struct RunAssessment {
     pub temperatures_degc: Vec<Option<f64>>,
     /// Standard deviation of single readings within dwells, pooled, LSB.
     pub reading_std_lsb: Option<f64>,
+    /// What each systematic error does to this run's parameters; absent below full rank.
+    pub effects: Option<Vec<SystematicEffect>>,
 }
 
 impl RunAssessment {
@@ -149,9 +158,10 @@ pub fn assess(
         ends: experiment.output.ends,
         nominal_scale_m_s2_per_lsb: k0.value_m_s2_per_lsb,
     };
+    let inputs = Inputs::of(experiment, k0.value_m_s2_per_lsb);
     let mut runs = Vec::new();
     for (run, candidates) in adjusted_runs(experiment) {
-        runs.push(assess_run(experiment, &setting, options, &run, candidates, &mut findings));
+        runs.push(assess_run(experiment, &setting, options, &inputs, &run, candidates, &mut findings));
     }
     judge::some_runs_reversed(&mut findings, &experiment.runs);
 
@@ -160,7 +170,9 @@ pub fn assess(
         crate::estimate::Method::Paper => None,
         _ => shared_pair(experiment, &setting, &runs),
     };
-    let together = pool_runs(&runs, shared_pair.as_ref(), gravity, options.level);
+    let mut together = pool_runs(&runs, shared_pair.as_ref(), options.level);
+    let common = budget::common(&together, &runs);
+    let whole = budget::complete(&mut together, &common, options.level);
     let pooled = together.parameters.clone();
     let contradicted = findings.iter().any(|f| f.kind.severity() == crate::Severity::Reject);
     findings.extend(judge::reproducible(&experiment.runs, &pooled));
@@ -189,14 +201,20 @@ pub fn assess(
     }
     let error_level = error_level(&runs, &setting);
     findings.extend(error_level.iter().filter_map(ErrorLevel::finding));
-    findings.push(budget_finding());
+    let budget = budget::lines(&together, &common);
+    findings.extend(judge::assumed(&budget));
+    let drawn = match may_carry_result(&findings) {
+        true => drawn::draw(&together, &common, options.level, options.monte_carlo_digits),
+        false => Vec::new(),
+    };
+    findings.extend(judge::intervals_differ(&drawn));
 
     let verdict = verdict(&findings);
-    let budget = result::budget(&pooled, gravity);
     let compensation = may_carry_result(&findings)
         .then(|| {
             compensation_result(
                 &together,
+                whole.as_ref()?,
                 &runs,
                 experiment.output.quantizer,
                 k0.value_m_s2_per_lsb,
@@ -223,6 +241,7 @@ pub fn assess(
         influence,
         error_level,
         budget,
+        drawn,
         compensation,
         conformity,
         findings,
@@ -265,6 +284,7 @@ fn assess_run(
     experiment: &Experiment,
     setting: &Setting<'_>,
     options: &EstimateOptions,
+    inputs: &Inputs,
     run: &Run,
     candidates: Vec<&Position>,
     findings: &mut Vec<Finding>,
@@ -305,7 +325,9 @@ fn assess_run(
     }
     let variances: Vec<f64> =
         positions.iter().filter_map(|p| p.readings.std()).map(|s| s * s).collect();
+    let effects = estimate.as_ref().and_then(|e| effects(e, &positions, setting, inputs, &[]));
     RunAssessment {
+        effects,
         name: run.name.clone(),
         mounting: run.mounting.clone(),
         orientation: run.orientation,
@@ -460,15 +482,4 @@ fn pair_findings(experiment: &Experiment) -> Option<Finding> {
             "if they were taken in a run's power-up, name it: they tell bias and misalignment apart"
                 .into(),
     })
-}
-
-/// Stated on every passport until the budget holds the dial's systematic errors.
-fn budget_finding() -> Finding {
-    Finding {
-        kind: FindingKind::BudgetIncomplete,
-        place: "budget".into(),
-        observed: "the uncertainty holds scatter, runs, gravity and the lean of upright dwells".into(),
-        limit: "also scale error and eccentricity of the dial, tilt of its axis, lean of the sensor".into(),
-        remedy: "3′ of eccentricity shifts the scale by 570 ppm at ±65° and hardly shows in the residuals: check the dial against a reference before relying on less".into(),
-    }
 }

@@ -2,11 +2,11 @@
 
 use super::units::{self, BIAS, FIRST_SEAT, Layout, Member, SCALE};
 use super::{RunAssessment, SharedPair};
-use crate::Gravity;
 use crate::combine::{Basis, Combined, Unit, combine, heterogeneity, prediction};
 use crate::estimate::Parameter;
 use crate::linalg::Matrix;
 use crate::stats::{mean, student_factor};
+use crate::systematic::Quantity;
 
 /// A closed interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,8 +67,10 @@ pub struct PooledParameter {
     pub u_statistical: f64,
     /// Degrees of freedom of `u_statistical`.
     pub dof_statistical: f64,
-    /// Standard uncertainty from what scatter does not show (gravity).
+    /// Standard uncertainty from what scatter does not show; zero until the budget is put in.
     pub u_budget: f64,
+    /// The largest part of it.
+    pub dominant: Option<Quantity>,
     /// Both together.
     pub standard_uncertainty: f64,
     /// Effective degrees of freedom (Welch–Satterthwaite).
@@ -113,8 +115,8 @@ pub struct PooledRuns {
 
 /// Puts the runs together: [`pool_runs`] without a shared pair, the parameters alone.
 #[must_use]
-pub fn pool(runs: &[RunAssessment], gravity: &Gravity, level: f64) -> Vec<PooledParameter> {
-    pool_runs(runs, None, gravity, level).parameters
+pub fn pool(runs: &[RunAssessment], level: f64) -> Vec<PooledParameter> {
+    pool_runs(runs, None, level).parameters
 }
 
 /// Puts the runs, and an up/down pair that they share, together in one adjustment.
@@ -132,7 +134,6 @@ pub fn pool(runs: &[RunAssessment], gravity: &Gravity, level: f64) -> Vec<Pooled
 pub fn pool_runs(
     runs: &[RunAssessment],
     pair: Option<&SharedPair>,
-    gravity: &Gravity,
     level: f64,
 ) -> PooledRuns {
     let layout = units::layout(runs);
@@ -153,7 +154,6 @@ pub fn pool_runs(
         layout: &layout,
         combined: &combined,
         repeated: super::repeated_share(runs).unwrap_or(0.0),
-        gravity,
         level,
     };
     let seats = || FIRST_SEAT..FIRST_SEAT + layout.seats.len();
@@ -193,7 +193,6 @@ struct Pooling<'a> {
     layout: &'a Layout<'a>,
     combined: &'a Combined,
     repeated: f64,
-    gravity: &'a Gravity,
     level: f64,
 }
 
@@ -220,13 +219,8 @@ impl Pooling<'_> {
         let u_statistical = spread.hypot(common.sqrt());
         let dof_statistical =
             welch_satterthwaite(u_statistical, spread, contrast.degrees_of_freedom);
-        let u_budget = gravity_sensitivity(parameter, contrast.value, self.gravity)
-            * self.gravity.standard_uncertainty_m_s2;
-        let standard_uncertainty = u_statistical.hypot(u_budget);
-        let degrees_of_freedom =
-            welch_satterthwaite(standard_uncertainty, u_statistical, dof_statistical);
-        let coverage_factor = student_factor(self.level, degrees_of_freedom)?;
-        let expanded_uncertainty = coverage_factor * standard_uncertainty;
+        let coverage_factor = student_factor(self.level, dof_statistical)?;
+        let expanded_uncertainty = coverage_factor * u_statistical;
         let omega2 = self.combined.omega_squared[i];
         let predicted =
             prediction(contrast, omega2.unwrap_or(0.0), mean(&v.variances)?, self.level)
@@ -248,9 +242,10 @@ impl Pooling<'_> {
             value: contrast.value,
             u_statistical,
             dof_statistical,
-            u_budget,
-            standard_uncertainty,
-            degrees_of_freedom,
+            u_budget: 0.0,
+            dominant: None,
+            standard_uncertainty: u_statistical,
+            degrees_of_freedom: dof_statistical,
             coverage_factor,
             expanded_uncertainty,
             interval: around(expanded_uncertainty),
@@ -369,15 +364,6 @@ pub fn scale_factor(scale_error: &PooledParameter, nominal_scale: f64) -> Pooled
         run_weights: scale_error.run_weights.iter().map(|a| a.map(|w| nominal_scale * w)).collect(),
         pair_weight: nominal_scale * scale_error.pair_weight,
         ..scale_error.clone()
-    }
-}
-
-/// `|∂θ/∂g|`: bias and scale factor are proportional to `g`, the misalignment does not know it.
-pub(super) fn gravity_sensitivity(parameter: Parameter, value: f64, gravity: &Gravity) -> f64 {
-    match parameter {
-        Parameter::Bias => (value / gravity.value_m_s2).abs(),
-        Parameter::Misalignment => 0.0,
-        Parameter::ScaleError => ((1.0 + value) / gravity.value_m_s2).abs(),
     }
 }
 

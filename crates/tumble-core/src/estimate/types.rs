@@ -37,12 +37,14 @@ pub struct EstimateOptions {
     pub weights: Weights,
     /// Level of confidence of intervals.
     pub level: f64,
+    /// Significant digits of the uncertainty that Monte Carlo is to settle (JCGM 101, 7.9.2), 1 or 2; zero: no draws.
+    pub monte_carlo_digits: u32,
 }
 
 impl Default for EstimateOptions {
     /// Likelihood, both kinds of scatter, 95 % (JCGM 100: the level for expanded uncertainties).
     fn default() -> Self {
-        Self { method: Method::Likelihood, weights: Weights::Angle, level: 0.95 }
+        Self { method: Method::Likelihood, weights: Weights::Angle, level: 0.95, monte_carlo_digits: 2 }
     }
 }
 

@@ -3,6 +3,7 @@
 use super::Explanation;
 use crate::assess::INFLUENCE_SIGNIFICANCE;
 use crate::judge::limits::{
+    ASSUMED_SHARE,
     LITTLE_DITHER_LSB2, NOTEWORTHY_FACTOR, RANGE_LIMIT_DEG, SLOW_NOISE, TABLE_SIGNIFICANCE,
 };
 use crate::nominal::DISAGREEMENT_LIMIT;
@@ -157,14 +158,41 @@ pub(super) fn signal_level_effect() -> Explanation {
 
 pub(super) fn budget_incomplete() -> Explanation {
     Explanation::new(
-        "Every passport of this version says so. The uncertainty holds scatter, spread of the runs, gravity and the lean \
-         of upright dwells, and nothing of the errors of the table that are the same in every run.",
+        "Passports of versions before the budget say so, all of them: their uncertainty holds scatter, spread of the runs, \
+         gravity and the lean of upright dwells, and nothing of the errors of the table that are the same in every run.",
         "They do not show in the scatter. 3' of eccentricity of the dial at ±65° shift the scale by 568 ppm or the bias \
          by 4.4 mm/s²; 1° of tilt of the table's axis together with 1° of lean of the sensor shifts the bias by 3.0 \
          mm/s² (0.39 LSB of the paper's sensor).",
-        "Before you rely on less than that, check the dial against a reference (a polygon, an electronic level) at \
-         several angles, and level the axis of the table.",
-        "method, section 10 (uncertainty budget); docs/passport.md",
+        "Certify the experiment again: this version has them in the uncertainty, and says in T0328 what of it is assumed.",
+        "method, section 10 (uncertainty budget); docs/budget.md",
+    )
+}
+
+pub(super) fn budget_assumed() -> Explanation {
+    Explanation::new(
+        format!(
+            "Quantities that experiment.toml does not state, and that the data cannot show, make up {:.0} % or more of the \
+             variance of a parameter: the scale and eccentricity of the dial, tilt and lean, K2 and K3 where no data sheet is \
+             known.",
+            100.0 * ASSUMED_SHARE
+        ),
+        "The uncertainty is honest only if the defaults are as large as what your bench does. A dial is taken to be as \
+         accurate as it is set, a bubble level and a hand as good as half a degree.",
+        "State what you know in [bench] (docs/budget.md lists the keys). Check the dial against a polygon or an electronic \
+         level; measure also with the body turned round (orientation = \"reversed\"), or with dwells at ±90°.",
+        "method, section 10 (uncertainty budget); docs/budget.md",
+    )
+}
+
+pub(super) fn intervals_differ() -> Explanation {
+    Explanation::new(
+        "The uncertainty is computed twice: by propagation (value ± k u, Welch-Satterthwaite) and by drawing all inputs from \
+         their distributions. Ends of the two intervals differ by more than half of the last of two significant digits of u.",
+        "Propagation takes everything as proportional and nearly Gaussian. With few runs, or where tilt times lean counts, it is \
+         not quite so; which of the two is wider depends on the case.",
+        "Nothing, if the last digit of U does not matter. Else take the interval by Monte Carlo, which stands beside it in the \
+         passport.",
+        "JCGM 101:2008, clause 8; docs/budget.md",
     )
 }
 

@@ -97,6 +97,8 @@ impl FindingKind {
             K::TemperatureEffect => bench::temperature_effect(),
             K::SignalLevelEffect => bench::signal_level_effect(),
             K::BudgetIncomplete => bench::budget_incomplete(),
+            K::BudgetAssumed => bench::budget_assumed(),
+            K::IntervalsDiffer => bench::intervals_differ(),
             K::NoAngleUncertainty => bench::no_angle_uncertainty(),
             K::IgnoredColumns => record::ignored_columns(),
             K::CompensationWorse => bench::compensation_worse(),

@@ -4,6 +4,7 @@
 //! against its target.
 
 use crate::assess::{PooledParameter, RunAssessment};
+use crate::systematic::Quantity;
 use crate::estimate::{Estimate, Parameter};
 use crate::{Finding, FindingKind, Targets};
 
@@ -155,9 +156,18 @@ pub fn determined_result(
                 place,
                 observed,
                 limit,
-                remedy: "the uncertainty of gravity alone is larger: give latitude_deg and height_m in [bench] (or a measured \
+                remedy: match p.dominant {
+                    None | Some(Quantity::Gravity) => {
+                        "the uncertainty of gravity alone is larger: give latitude_deg and height_m in [bench] (or a measured \
                          gravity with gravity_uncertainty); or state a wider target in [spec]"
-                    .into(),
+                            .into()
+                    }
+                    Some(q) => format!(
+                        "what the bench is not known by is larger than the target, most of it by: {}; measure or state it in \
+                         [bench] (docs/budget.md), or state a wider target in [spec]",
+                        q.name()
+                    ),
+                },
             }
         } else if enough_positions && pooled_runs(runs) > 1 {
             Finding {

@@ -10,7 +10,7 @@ use tumble_core::{
 use super::bench::{GRAVITY, covers, find, quiet_table, run, setting};
 
 const OPTIONS: EstimateOptions =
-    EstimateOptions { method: Method::Exact, weights: Weights::Equal, level: 0.95 };
+    EstimateOptions { method: Method::Exact, weights: Weights::Equal, level: 0.95, ..EstimateOptions::default() };
 
 fn with_pair(truth: &Truth) -> Experiment {
     let mut e = experiment(truth);
@@ -66,15 +66,15 @@ fn a_shared_pair_enters_once_and_keeps_the_coverage() {
             };
             let runs = together(&[]);
             let shared = shared_pair(&e, &setting(&e), &runs).unwrap();
-            let joint = pool_runs(&runs, Some(&shared), &GRAVITY, 0.95).parameters;
-            let alone = pool_runs(&runs, None, &GRAVITY, 0.95).parameters;
+            let joint = pool_runs(&runs, Some(&shared), 0.95).parameters;
+            let alone = pool_runs(&runs, None, 0.95).parameters;
             let truths = [truth.bias_m_s2, truth.misalignment.rad(), truth.scale_error];
             for p in Parameter::ALL {
                 covered[p.index()] += usize::from(covers(find(&joint, p), truths[p.index()]));
             }
             if smuggled {
                 let runs = together(&[&pair.up, &pair.down]);
-                let naive = pool_runs(&runs, None, &GRAVITY, 0.95).parameters;
+                let naive = pool_runs(&runs, None, 0.95).parameters;
                 covered[3] += usize::from(covers(find(&naive, Parameter::Bias), truth.bias_m_s2));
             }
             with += find(&joint, Parameter::ScaleError).standard_uncertainty;

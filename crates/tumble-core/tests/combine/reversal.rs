@@ -8,7 +8,7 @@ use tumble_core::{Angle, FindingKind, Orientation};
 use super::bench::{GRAVITY, covers, find, quiet_table, runs};
 
 const OPTIONS: EstimateOptions =
-    EstimateOptions { method: Method::Exact, weights: Weights::Equal, level: 0.95 };
+    EstimateOptions { method: Method::Exact, weights: Weights::Equal, level: 0.95, ..EstimateOptions::default() };
 
 /// `ε` of the table, `δ` of the body, rad.
 const EPSILON: f64 = 1.5e-3;
@@ -40,7 +40,7 @@ fn table_zero_and_misalignment_are_told_apart() {
         let mut covered = [0usize; 3];
         for seed in 0..n {
             let all = both(normal, reversed, seed as u64 + 1);
-            let together = pool_runs(&all, None, &GRAVITY, 0.95);
+            let together = pool_runs(&all, None, 0.95);
             let zero = together.table_zero.unwrap();
             let misalignment = find(&together.parameters, Parameter::Misalignment);
             assert_eq!(together.parameters.len(), 3);
@@ -63,8 +63,8 @@ fn table_zero_and_misalignment_are_told_apart() {
 
 #[test]
 fn one_orientation_gives_the_sum() {
-    let normal = pool_runs(&both(3, 0, 7), None, &GRAVITY, 0.95);
-    let reversed = pool_runs(&both(0, 3, 7), None, &GRAVITY, 0.95);
+    let normal = pool_runs(&both(3, 0, 7), None, 0.95);
+    let reversed = pool_runs(&both(0, 3, 7), None, 0.95);
     assert!(normal.table_zero.is_none() && reversed.table_zero.is_none());
     assert!(covers(find(&normal.parameters, Parameter::Misalignment), DELTA + EPSILON));
     assert!(covers(find(&reversed.parameters, Parameter::Misalignment), DELTA - EPSILON));
@@ -81,7 +81,7 @@ fn mountings_do_not_share_what_turns_with_the_body() {
             .into_iter()
             .map(|r| RunAssessment { mounting: "B".into(), ..r }),
     );
-    let together = pool_runs(&all, None, &GRAVITY, 0.95);
+    let together = pool_runs(&all, None, 0.95);
     let found: Vec<(Option<&str>, f64, f64)> = together
         .parameters
         .iter()

@@ -30,7 +30,7 @@ fn one_run_has_its_own_uncertainty_and_no_prediction() {
 fn two_runs_are_honest_however_wide() {
     let options = EstimateOptions::default();
     let truth = Truth { runs: 2, turn_on_m_s2: 0.01, ..quiet_table() };
-    let all = pool(&runs(&truth, Orientation::Normal, &options), &GRAVITY, 0.95);
+    let all = pool(&runs(&truth, Orientation::Normal, &options), 0.95);
     let bias = find(&all, Parameter::Bias);
     assert!((bias.coverage_factor - 12.706).abs() < 1e-3);
     let s = bias.between_run_sd.unwrap();
@@ -45,7 +45,7 @@ fn two_runs_are_honest_however_wide() {
 fn a_hundred_runs_are_known_well() {
     let options = EstimateOptions::default();
     let truth = Truth { runs: 100, turn_on_m_s2: 0.01, ..quiet_table() };
-    let all = pool(&runs(&truth, Orientation::Normal, &options), &GRAVITY, 0.95);
+    let all = pool(&runs(&truth, Orientation::Normal, &options), 0.95);
     let bias = find(&all, Parameter::Bias);
     let between = bias.between_runs.unwrap();
     assert!((between.omega.unwrap() / 0.01 - 1.0).abs() < 0.25, "{between:?}");
@@ -66,7 +66,7 @@ fn every_run_in_a_mounting_of_its_own() {
     for (i, r) in all.iter_mut().enumerate() {
         r.mounting = format!("M{i}");
     }
-    let pooled = pool(&all, &GRAVITY, 0.95);
+    let pooled = pool(&all, 0.95);
     assert_eq!(pooled.len(), 6);
     for p in pooled.iter().filter(|p| p.parameter == Parameter::Misalignment) {
         assert!(p.runs == 1 && p.prediction_interval.is_none() && p.between_runs.is_none());

@@ -16,7 +16,7 @@ fn estimated_covariances_keep_the_coverage() {
     for method in methods {
         for (k, spread) in [(3, 0.0), (3, 1.0), (5, 0.0), (5, 1.0), (5, 3.0), (5, 10.0), (10, 1.0)]
         {
-            let options = EstimateOptions { method: *method, weights: Weights::Equal, level: 0.95 };
+            let options = EstimateOptions { method: *method, weights: Weights::Equal, level: 0.95, ..EstimateOptions::default() };
             // u(Δa) of this plan and scatter, m/s².
             let u = 0.000_5;
             let mut covered = [0usize; 5];
@@ -34,7 +34,7 @@ fn estimated_covariances_keep_the_coverage() {
                 let Some(next) = all.pop().and_then(|r| r.estimate).and_then(|e| e.full()) else {
                     continue;
                 };
-                let pooled = pool(&all, &GRAVITY, 0.95);
+                let pooled = pool(&all, 0.95);
                 let bias = find(&pooled, Parameter::Bias);
                 let truths = [truth.bias_m_s2, truth.misalignment.rad(), truth.scale_error];
                 tried += 1;

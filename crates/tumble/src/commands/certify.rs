@@ -85,7 +85,12 @@ fn options(args: &CertifyArgs) -> Result<CertifyOptions, (String, Exit)> {
         (_, Some(WeightsArg::Angle) | None) => Weights::Angle,
     };
     Ok(CertifyOptions {
-        estimate: EstimateOptions { method, weights, level: args.level },
+        estimate: EstimateOptions {
+            method,
+            weights,
+            level: args.level,
+            monte_carlo_digits: args.monte_carlo,
+        },
         id: args.id.clone(),
         issued: args.issued.clone(),
         catalogue: args.catalogue.as_deref().map(Catalogue::read).transpose().map_err(|e| {
