@@ -187,6 +187,9 @@ pub(crate) struct CertifyArgs {
     /// Level of confidence of all intervals.
     #[arg(long, default_value_t = 0.95, value_parser = level)]
     pub(crate) level: f64,
+    /// Digits of U that Monte Carlo is to settle (JCGM 101): 1, 2, or 0 for no draws.
+    #[arg(long, value_name = "DIGITS", default_value_t = 2, value_parser = clap::value_parser!(u32).range(0..=2))]
+    pub(crate) monte_carlo: u32,
     /// Your own types of sensors, over the folder's catalogue.toml and the built-in ones.
     #[arg(long, value_name = "FILE")]
     pub(crate) catalogue: Option<PathBuf>,

@@ -115,10 +115,7 @@ fn propagated(
 }
 
 /// Correlations of the statistical parts, where they are known: of the first mounting.
-pub(super) fn correlations(
-    together: &PooledRuns,
-    columns: [usize; 3],
-) -> Vec<(usize, usize, f64)> {
+pub(super) fn correlations(together: &PooledRuns, columns: [usize; 3]) -> Vec<(usize, usize, f64)> {
     let known = first_columns(together) == Some(columns);
     let scatter = together.covariance.as_ref().filter(|_| known);
     let varies = |i: usize| together.parameters[columns[i]].u_statistical > 0.0;
@@ -166,9 +163,9 @@ pub(super) fn complete(
         p.expanded_uncertainty = p.coverage_factor * p.standard_uncertainty;
         p.interval = Interval::around(p.value, p.expanded_uncertainty);
         let by_bench = normal_quantile(0.5 * (1.0 + level)) * p.u_budget;
-        p.prediction_true_interval = p.prediction_true_interval.map(|i| {
-            Interval::around(p.value, (0.5 * (i.high - i.low)).hypot(by_bench))
-        });
+        p.prediction_true_interval = p
+            .prediction_true_interval
+            .map(|i| Interval::around(p.value, (0.5 * (i.high - i.low)).hypot(by_bench)));
     }
     covariance
 }

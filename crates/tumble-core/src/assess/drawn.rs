@@ -5,7 +5,8 @@ use super::{Interval, PooledParameter, PooledRuns};
 use crate::estimate::Parameter;
 use crate::systematic::{Quantity, Shape};
 use crate::uncertainty::{
-    Distribution, Input, Measurement, Model, MonteCarloOptions, MonteCarloOutput, Scalar, Validation,
+    Distribution, Input, Measurement, Model, MonteCarloOptions, MonteCarloOutput, Scalar,
+    Validation,
 };
 
 /// Statistical parts of bias, misalignment and scale error; tilt and lean; linear quantities.
@@ -157,7 +158,8 @@ impl Model<INPUTS, 3> for PooledModel {
         let product = x[3] * x[4];
         let half_squares = (x[3].square() + x[4].square()) * c(0.5);
         core::array::from_fn(|i| {
-            let start = x[i] + c(self.product[i]) * product + c(self.half_squares[i]) * half_squares;
+            let start =
+                x[i] + c(self.product[i]) * product + c(self.half_squares[i]) * half_squares;
             self.linear.iter().zip(&x[5..]).fold(start, |sum, (s, x)| sum + c(s[i]) * *x)
         })
     }

@@ -12,7 +12,9 @@ mod result;
 mod units;
 mod verdict;
 
+pub use budget::BudgetLine;
 pub use conformity::{Conformity, QuantityConformity, conformity};
+pub use drawn::Drawn;
 pub use error_level::{ErrorLevel, RunErrorLevel, error_level};
 pub use influence::{Influence, InfluenceTest, influence};
 pub use pair::{SharedPair, shared_pair};
@@ -20,8 +22,6 @@ pub use pool::{
     BetweenRuns, Interval, PooledParameter, PooledRuns, in_lsb, pool, pool_runs, scale_factor,
 };
 pub use repeat::repeated_share;
-pub use budget::BudgetLine;
-pub use drawn::Drawn;
 pub use result::{CompensationResult, compensation_result};
 pub use verdict::{Verdict, may_carry_result, verdict};
 
@@ -34,8 +34,8 @@ use crate::estimate::{
     Estimate, EstimateOptions, Residual, Setting, Weights, determines_all, estimate,
 };
 use crate::judge::{self, Structure};
-use crate::systematic::{Inputs, SystematicEffect, effects};
 use crate::nominal::{NominalScale, NominalScaleError, nominal_scale};
+use crate::systematic::{Inputs, SystematicEffect, effects};
 use crate::{
     Experiment, Finding, FindingKind, GravitySource, Orientation, PairUse, Position, Run,
     STANDARD_GRAVITY_M_S2,
@@ -147,7 +147,6 @@ pub fn assess(
         return Err(AssessError::NothingStated);
     }
     let (k0, mut findings) = nominal_scale(experiment).map_err(AssessError::NominalScale)?;
-    let gravity = &experiment.bench.gravity;
     findings.extend(gravity_findings(experiment));
     findings.extend(judge::identical_runs(&experiment.runs));
     findings.extend(pair_findings(experiment));
@@ -161,7 +160,15 @@ pub fn assess(
     let inputs = Inputs::of(experiment, k0.value_m_s2_per_lsb);
     let mut runs = Vec::new();
     for (run, candidates) in adjusted_runs(experiment) {
-        runs.push(assess_run(experiment, &setting, options, &inputs, &run, candidates, &mut findings));
+        runs.push(assess_run(
+            experiment,
+            &setting,
+            options,
+            &inputs,
+            &run,
+            candidates,
+            &mut findings,
+        ));
     }
     judge::some_runs_reversed(&mut findings, &experiment.runs);
 

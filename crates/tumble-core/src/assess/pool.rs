@@ -131,11 +131,7 @@ pub fn pool(runs: &[RunAssessment], level: f64) -> Vec<PooledParameter> {
 ///
 /// **Source** method sections 7 and 9.
 #[must_use]
-pub fn pool_runs(
-    runs: &[RunAssessment],
-    pair: Option<&SharedPair>,
-    level: f64,
-) -> PooledRuns {
+pub fn pool_runs(runs: &[RunAssessment], pair: Option<&SharedPair>, level: f64) -> PooledRuns {
     let layout = units::layout(runs);
     if layout.members.is_empty() {
         return PooledRuns::default();

@@ -1,6 +1,6 @@
 //! Coefficients for use, and the budget of what scatter does not show.
 
-use super::{PooledParameter, PooledRuns, RunAssessment};
+use super::{PooledRuns, RunAssessment};
 use crate::estimate::Parameter;
 use crate::linalg::Matrix;
 use crate::{Quantizer, QuantizerOffset};

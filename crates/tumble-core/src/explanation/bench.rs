@@ -3,8 +3,8 @@
 use super::Explanation;
 use crate::assess::INFLUENCE_SIGNIFICANCE;
 use crate::judge::limits::{
-    ASSUMED_SHARE,
-    LITTLE_DITHER_LSB2, NOTEWORTHY_FACTOR, RANGE_LIMIT_DEG, SLOW_NOISE, TABLE_SIGNIFICANCE,
+    ASSUMED_SHARE, LITTLE_DITHER_LSB2, NOTEWORTHY_FACTOR, RANGE_LIMIT_DEG, SLOW_NOISE,
+    TABLE_SIGNIFICANCE,
 };
 use crate::nominal::DISAGREEMENT_LIMIT;
 use crate::{DEFAULT_VERTICAL_LEAN_ARCMIN, STANDARD_GRAVITY_M_S2};
@@ -186,8 +186,12 @@ pub(super) fn budget_assumed() -> Explanation {
 
 pub(super) fn intervals_differ() -> Explanation {
     Explanation::new(
-        "The uncertainty is computed twice: by propagation (value ± k u, Welch-Satterthwaite) and by drawing all inputs from \
-         their distributions. Ends of the two intervals differ by more than half of the last of two significant digits of u.",
+        format!(
+            "The uncertainty is computed twice: by propagation (value ± k u, Welch-Satterthwaite) and by drawing all inputs from \
+             their distributions. Ends of the two intervals differ by more than {:.0} % of U. Smaller differences stand in the \
+             passport alone.",
+            100.0 * DIFFERS_BY
+        ),
         "Propagation takes everything as proportional and nearly Gaussian. With few runs, or where tilt times lean counts, it is \
          not quite so; which of the two is wider depends on the case.",
         "Nothing, if the last digit of U does not matter. Else take the interval by Monte Carlo, which stands beside it in the \

@@ -4,8 +4,8 @@
 //! against its target.
 
 use crate::assess::{PooledParameter, RunAssessment};
-use crate::systematic::Quantity;
 use crate::estimate::{Estimate, Parameter};
+use crate::systematic::Quantity;
 use crate::{Finding, FindingKind, Targets};
 
 /// Condition number (unit columns) from which the correlation is worth a warning. The best plans of a table

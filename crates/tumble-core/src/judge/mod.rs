@@ -41,7 +41,7 @@ pub use type_limits::{Judged, type_limits};
 
 /// Thresholds that the explanations name, so that text and judgement cannot drift apart.
 pub(crate) mod limits {
-    pub(crate) use super::budgeted::ASSUMED_SHARE;
+    pub(crate) use super::budgeted::{ASSUMED_SHARE, DIFFERS_BY};
     pub(crate) use super::dwell_fit::{
         FEWEST as FEWEST_DWELLS, LEVEL as MISFIT_LEVEL, WRONG_SHARE,
     };

@@ -9,8 +9,12 @@ use tumble_core::{
 
 use super::bench::{GRAVITY, covers, find, quiet_table, run, setting};
 
-const OPTIONS: EstimateOptions =
-    EstimateOptions { method: Method::Exact, weights: Weights::Equal, level: 0.95, ..EstimateOptions::default() };
+const OPTIONS: EstimateOptions = EstimateOptions {
+    method: Method::Exact,
+    weights: Weights::Equal,
+    level: 0.95,
+    ..EstimateOptions::default()
+};
 
 fn with_pair(truth: &Truth) -> Experiment {
     let mut e = experiment(truth);

@@ -7,8 +7,12 @@ use tumble_core::{Angle, FindingKind, Orientation};
 
 use super::bench::{GRAVITY, covers, find, quiet_table, runs};
 
-const OPTIONS: EstimateOptions =
-    EstimateOptions { method: Method::Exact, weights: Weights::Equal, level: 0.95, ..EstimateOptions::default() };
+const OPTIONS: EstimateOptions = EstimateOptions {
+    method: Method::Exact,
+    weights: Weights::Equal,
+    level: 0.95,
+    ..EstimateOptions::default()
+};
 
 /// `ε` of the table, `δ` of the body, rad.
 const EPSILON: f64 = 1.5e-3;

@@ -16,7 +16,12 @@ fn estimated_covariances_keep_the_coverage() {
     for method in methods {
         for (k, spread) in [(3, 0.0), (3, 1.0), (5, 0.0), (5, 1.0), (5, 3.0), (5, 10.0), (10, 1.0)]
         {
-            let options = EstimateOptions { method: *method, weights: Weights::Equal, level: 0.95, ..EstimateOptions::default() };
+            let options = EstimateOptions {
+                method: *method,
+                weights: Weights::Equal,
+                level: 0.95,
+                ..EstimateOptions::default()
+            };
             // u(Δa) of this plan and scatter, m/s².
             let u = 0.000_5;
             let mut covered = [0usize; 5];

@@ -1,6 +1,6 @@
 //! From a judged experiment to its passport: names and shapes, no arithmetic.
 
-use tumble_core::assess::{Assessment, Interval, PooledParameter, RunAssessment};
+use tumble_core::assess::{Assessment, Drawn, Interval, PooledParameter, RunAssessment};
 use tumble_core::estimate::{
     Estimate as RunFit, EstimateOptions, Method, Parameter, Ranged, Split, Weights,
 };
@@ -101,6 +101,7 @@ pub fn build(
                 (_, Weights::Angle | Weights::Stated) => "angle".into(),
             },
             level: options.level,
+            monte_carlo_digits: options.monte_carlo_digits,
             targets: wire::Targets {
                 bias_m_s2: experiment.targets.bias_m_s2,
                 misalignment_rad: experiment.targets.misalignment_rad,
@@ -217,12 +218,35 @@ fn pooled(p: &PooledParameter, k0: f64, level: f64) -> wire::Estimate {
             i_squared: b.i_squared,
         }),
         intersection_of_runs: p.intersection.map(pair),
+        monte_carlo: None,
     }
+}
+
+/// What the draws say of a pooled value.
+fn monte_carlo(a: &Assessment, p: &PooledParameter) -> Option<wire::MonteCarlo> {
+    let of = |d: &&Drawn| d.parameter == p.parameter && d.mounting == p.mounting;
+    let d = a.drawn.iter().find(of)?;
+    Some(wire::MonteCarlo {
+        draws: d.draws,
+        stabilized: d.stabilized,
+        value: d.output.value,
+        standard_uncertainty: d.output.standard_uncertainty,
+        interval: pair(d.output.symmetric),
+        shortest_interval: pair(d.output.shortest),
+        d_low: d.validation.d_low,
+        d_high: d.validation.d_high,
+        tolerance: d.validation.tolerance,
+        validated: d.validation.holds(),
+    })
 }
 
 fn result(a: &Assessment, level: f64) -> Option<wire::ResultSection> {
     let compensation = a.compensation.as_ref()?;
     let k0 = a.nominal_scale.value_m_s2_per_lsb;
+    let with_draws = |p: &PooledParameter| wire::Estimate {
+        monte_carlo: monte_carlo(a, p),
+        ..pooled(p, k0, level)
+    };
     let all = |parameter| a.pooled.iter().filter(move |p| p.parameter == parameter);
     let bias = all(Parameter::Bias).next()?;
     let scale = all(Parameter::ScaleError).next()?;
@@ -231,9 +255,9 @@ fn result(a: &Assessment, level: f64) -> Option<wire::ResultSection> {
     let mut scale_factor = pooled(&of_scale_factor, k0, level);
     scale_factor.unit = "m/s2/LSB".into();
     Some(wire::ResultSection {
-        bias: pooled(bias, k0, level),
+        bias: with_draws(bias),
         misalignment: match misalignments[..] {
-            [only] => Some(pooled(only, k0, level)),
+            [only] => Some(with_draws(only)),
             _ => None,
         },
         mountings: match misalignments[..] {
@@ -242,7 +266,7 @@ fn result(a: &Assessment, level: f64) -> Option<wire::ResultSection> {
                 .iter()
                 .map(|m| wire::Mounting {
                     name: m.mounting.clone().unwrap_or_default(),
-                    misalignment: pooled(m, k0, level),
+                    misalignment: with_draws(m),
                 })
                 .collect(),
         },
@@ -252,7 +276,7 @@ fn result(a: &Assessment, level: f64) -> Option<wire::ResultSection> {
             standard_uncertainty: p.standard_uncertainty,
             lean_correction: p.lean_correction,
         }),
-        scale_error: pooled(scale, k0, level),
+        scale_error: with_draws(scale),
         scale_factor,
         covariance: compensation.parameter_covariance.as_ref().map(three),
     })
@@ -412,6 +436,7 @@ fn budget_line(b: &tumble_core::assess::BudgetLine) -> wire::BudgetLine {
         parameter: b.parameter.name().into(),
         mounting: b.mounting.clone(),
         quantity: b.quantity.into(),
+        source: b.source.clone(),
         standard_uncertainty: b.standard_uncertainty,
         unit: b.unit.into(),
         distribution: b.distribution.into(),

@@ -193,6 +193,27 @@ pub struct Estimate {
     /// What the runs' intervals have in common: a picture of agreement, never the result.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub intersection_of_runs: Option<[f64; 2]>,
+    /// The same by drawing all inputs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub monte_carlo: Option<MonteCarlo>,
+}
+
+/// A value's distribution by Monte Carlo (JCGM 101), and whether it confirms `value ± U`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MonteCarlo {
+    pub draws: usize,
+    /// Whether the draws stood still before they ran out.
+    pub stabilized: bool,
+    pub value: f64,
+    pub standard_uncertainty: f64,
+    /// Probabilistically symmetric.
+    pub interval: [f64; 2],
+    pub shortest_interval: [f64; 2],
+    pub d_low: f64,
+    pub d_high: f64,
+    pub tolerance: f64,
+    /// `d_low` and `d_high` within `tolerance`.
+    pub validated: bool,
 }
 
 /// Spread between power-ups beyond the runs' own uncertainties.
@@ -394,6 +415,9 @@ pub struct BudgetLine {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mounting: Option<String>,
     pub quantity: String,
+    /// `these data`, `stated`, or the reason of a default; empty in passports of older versions.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub source: String,
     pub standard_uncertainty: f64,
     pub unit: String,
     pub distribution: String,
@@ -427,6 +451,9 @@ pub struct Options {
     pub method: String,
     pub weights: String,
     pub level: f64,
+    /// Digits of the uncertainty that the draws were to settle; zero: none were made.
+    #[serde(default)]
+    pub monte_carlo_digits: u32,
     pub targets: Targets,
 }
 

@@ -150,7 +150,76 @@ pub(super) fn budget(page: &Page<'_>) -> Markup {
         ],
         &page.passport.budget.iter().map(row).collect::<Vec<_>>(),
     );
+    let body = html! { (body) (sources(page)) (draws(page)) };
     section("Uncertainty budget", &body)
+}
+
+/// Where the uncertainties of the budget come from, a line a quantity.
+fn sources(page: &Page<'_>) -> Markup {
+    let mut rows: Vec<Vec<String>> = Vec::new();
+    for b in page.passport.budget.iter().filter(|b| !b.source.is_empty()) {
+        let quantity = one_line(&b.quantity);
+        if !rows.iter().any(|r| r[0] == quantity) {
+            rows.push(vec![quantity, one_line(&b.source)]);
+        }
+    }
+    if rows.is_empty() {
+        return html! {};
+    }
+    let columns = [text("Quantity"), text("Where its uncertainty comes from")];
+    table("", "Stated in experiment.toml, or a default with its reason.", &columns, &rows)
+}
+
+/// The same by Monte Carlo.
+fn draws(page: &Page<'_>) -> Markup {
+    let Some(result) = &page.passport.result else { return html! {} };
+    let mut all = vec![("Bias".to_owned(), &result.bias)];
+    all.extend(result.misalignment.iter().map(|m| ("Misalignment".to_owned(), m)));
+    all.extend(
+        result
+            .mountings
+            .iter()
+            .map(|m| (format!("Misalignment ({})", shortened(&m.name, 16)), &m.misalignment)),
+    );
+    all.push(("Scale error".to_owned(), &result.scale_error));
+    let rows: Vec<Vec<String>> = all
+        .into_iter()
+        .filter_map(|(name, e)| {
+            let (m, [low, high]) = (e.monte_carlo.as_ref()?, e.interval?);
+            let digits = |v: f64| number(v, 4);
+            Some(vec![
+                name,
+                digits(low),
+                digits(high),
+                digits(m.interval[0]),
+                digits(m.interval[1]),
+                digits(m.shortest_interval[0]),
+                digits(m.shortest_interval[1]),
+                m.draws.to_string(),
+                if m.validated { "yes".into() } else { "no".into() },
+            ])
+        })
+        .collect();
+    if rows.is_empty() {
+        return html! {};
+    }
+    table(
+        "",
+        "By Monte Carlo (JCGM 101), in the parameter's SI unit: value ± U, the probabilistically symmetric and the shortest interval \
+         of the draws; whether value ± U agrees with the symmetric one within half of the second digit of u (clause 8).",
+        &[
+            text("Parameter"),
+            numbers("value − U"),
+            numbers("value + U"),
+            numbers("symmetric from"),
+            numbers("to"),
+            numbers("shortest from"),
+            numbers("to"),
+            numbers("Draws"),
+            units("Agrees"),
+        ],
+        &rows,
+    )
 }
 
 pub(super) fn runs(page: &Page<'_>) -> Markup {

@@ -22,9 +22,8 @@ pub(super) fn note(page: &Page<'_>) -> Markup {
                     "The expanded uncertainty U states an interval value ± U that is expected to hold the true value of the "
                     "parameter with a probability of " (crate::summary::level(p)) " (JCGM 100). It holds: "
                     @if holds.is_empty() { "the scatter of the readings" } @else { (listed(&holds)) }
-                    "; nothing else. Systematic errors of the table (scale and eccentricity of the dial, tilt of its axis), the \
-                     lean of the sensor out of the plane of tilt, ageing, transport, and temperatures outside the range that was \
-                     measured are not in it unless the budget names them."
+                    "; nothing else. Ageing, transport, and temperatures outside the range that was measured are not in it. What \
+                     the budget calls a default was assumed, not measured."
                 }
                 p {
                     "The values hold for this sensor and axis, in the mounting and under the conditions stated. The misalignment \
