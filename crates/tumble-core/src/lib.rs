@@ -25,6 +25,7 @@ mod sensor_type;
 pub mod simulate;
 pub mod stats;
 mod stillness;
+pub mod systematic;
 pub mod term;
 mod units;
 
