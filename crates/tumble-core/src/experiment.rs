@@ -1,6 +1,7 @@
 //! What was measured, before anything is computed from it.
 
 use crate::decision::Specification;
+use crate::systematic::Systematics;
 use crate::{Angle, ConverterEnds, Gravity, Quantizer, Readings, Record, SensorType};
 
 /// One sensor, one axis, one bench, one or more runs.
@@ -61,6 +62,9 @@ pub struct Bench {
     pub range: Option<(Angle, Angle)>,
     /// `u(δ)`: standard uncertainty of how far the ±90° dwells lean from the vertical.
     pub vertical_lean: Angle,
+    /// What is stated of errors that no scatter shows; what is not, gets a default
+    /// ([`crate::systematic::Inputs::of`]).
+    pub systematics: Systematics,
 }
 
 /// Default of [`Bench::vertical_lean`]: a body stood on its end against a square or on a flat plate.

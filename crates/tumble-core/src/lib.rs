@@ -27,6 +27,7 @@ mod sensor_type;
 pub mod simulate;
 pub mod stats;
 mod stillness;
+pub mod systematic;
 pub mod term;
 pub mod uncertainty;
 mod units;

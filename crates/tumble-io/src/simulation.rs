@@ -216,6 +216,8 @@ fn truth_text(truth: &Truth) -> String {
     number("dial_scale", truth.dial_scale);
     number("eccentricity_arcmin", truth.eccentricity.arcmin());
     number("eccentricity_phase_deg", truth.eccentricity_phase.deg());
+    number("axis_tilt_arcmin", truth.axis_tilt.arcmin());
+    number("sensor_lean_arcmin", truth.sensor_lean.arcmin());
     number("vertical_lean_arcmin", truth.vertical_lean.arcmin());
     number("dwell_s", truth.dwell_s);
     number("rate_hz", truth.rate_hz);

@@ -341,6 +341,12 @@ pub(crate) struct SimulateArgs {
     /// Phase of the eccentricity.
     #[arg(long, value_name = "ANGLE", allow_hyphen_values = true, value_parser = quantity::angle)]
     pub(crate) eccentricity_phase: Option<Angle>,
+    /// Tilt of the table's axis out of the horizontal.
+    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true, value_parser = quantity::angle)]
+    pub(crate) axis_tilt: Option<Angle>,
+    /// Lean of the sensor out of the plane in which the table turns.
+    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true, value_parser = quantity::angle)]
+    pub(crate) sensor_lean: Option<Angle>,
     /// Lean of upright dwells, standard.
     #[arg(long, value_name = "ANGLE", value_parser = quantity::angle)]
     pub(crate) lean: Option<Angle>,

@@ -123,17 +123,33 @@ fn against_stated(variance_ratio: f64, degrees_of_freedom: f64) -> Option<Agains
 
 /// `(α, β, γ)` of bias, misalignment and scale error.
 pub(super) fn unknowns(values: [f64; 3], setting: &Setting<'_>) -> [f64; 3] {
-    let [bias, misalignment, scale_error] = values;
-    let k = setting.nominal_scale_m_s2_per_lsb * (1.0 + scale_error);
-    let r = setting.bench.gravity.value_m_s2 / k;
-    [bias / k, r * misalignment.cos(), r * misalignment.sin()]
+    ToParameters::Exact {
+        gravity_m_s2: setting.bench.gravity.value_m_s2,
+        nominal_scale: setting.nominal_scale_m_s2_per_lsb,
+    }
+    .unknowns(values)
 }
 
 impl ToParameters {
+    /// The unknowns that have these parameters.
+    #[must_use]
+    pub fn unknowns(self, values: [f64; 3]) -> [f64; 3] {
+        match self {
+            Self::Identity => values,
+            Self::Exact { gravity_m_s2, nominal_scale } => {
+                let [bias, misalignment, scale_error] = values;
+                let k = nominal_scale * (1.0 + scale_error);
+                let r = gravity_m_s2 / k;
+                [bias / k, r * misalignment.cos(), r * misalignment.sin()]
+            }
+        }
+    }
+
     /// Parameters at a solution and their Jacobian.
     ///
     /// **Model** with `R = √(β²+γ²)`: `Δa = α g/R`, `Δφ = atan2(γ, β)`, `δk = g/(R k0) − 1`.
-    pub(super) fn at(self, unknowns: [f64; 3]) -> ([f64; 3], Matrix) {
+    #[must_use]
+    pub fn at(self, unknowns: [f64; 3]) -> ([f64; 3], Matrix) {
         match self {
             Self::Identity => {
                 let one = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];

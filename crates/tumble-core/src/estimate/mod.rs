@@ -12,7 +12,7 @@ mod types;
 
 pub use design::{Prediction, predict};
 pub use equations::{Equation, equations};
-pub use paper::WeightedRow;
+pub use paper::{ToParameters, WeightedRow};
 pub use sequential::{SequentialEstimate, Stabilization};
 pub use types::{
     AgainstStated, Estimate, EstimateError, EstimateOptions, Method, Parameter, ProfileIntervals,
@@ -91,6 +91,7 @@ pub fn estimate(
             .map(|(s, u)| u.map(|per_m_s2| per_m_s2 * s * setting.nominal_scale_m_s2_per_lsb)),
         stabilization,
         weighted_rows: fit.weighted_rows,
+        to_parameters: fit.to_parameters,
     })
 }
 

@@ -44,11 +44,16 @@ pub(super) struct Fit {
 
 /// From the unknowns of an adjustment to the parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum ToParameters {
+pub enum ToParameters {
     /// They are the parameters.
     Identity,
     /// `(α, β, γ)` of the exact form.
-    Exact { gravity_m_s2: f64, nominal_scale: f64 },
+    Exact {
+        /// `g`, m/s².
+        gravity_m_s2: f64,
+        /// `k0`, m/s² per LSB.
+        nominal_scale: f64,
+    },
 }
 
 /// Row `(1, g cosφ, −g sinφ)` of equation (6). Upright dwells know no misalignment.

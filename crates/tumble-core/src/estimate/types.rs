@@ -1,6 +1,6 @@
 //! What goes into an estimation and what comes out.
 
-use super::{Stabilization, WeightedRow};
+use super::{Stabilization, ToParameters, WeightedRow};
 use crate::linalg::Matrix;
 use crate::stats::student_factor;
 
@@ -243,6 +243,8 @@ pub struct Estimate {
     pub stabilization: Stabilization,
     /// The equations of the adjustment, over their standard deviations; for tests of further terms.
     pub weighted_rows: Vec<WeightedRow>,
+    /// From the unknowns of those equations to the parameters.
+    pub to_parameters: ToParameters,
 }
 
 impl Estimate {

@@ -47,6 +47,12 @@ impl Truth {
             + self.misalignment.rad()
     }
 
+    /// Acceleration along the axis, m/s², of a dwell on the table: its axis tilts by `η`, the sensor leans by `ψ`.
+    fn on_table_m_s2(&self, true_angle_rad: f64) -> f64 {
+        let (eta, psi) = (self.axis_tilt.rad(), self.sensor_lean.rad());
+        self.gravity_m_s2 * (psi.cos() * eta.cos() * true_angle_rad.sin() + psi.sin() * eta.sin())
+    }
+
     /// Noiseless analogue value, LSB, for an acceleration along the axis and a bias.
     fn analogue_lsb(&self, a: f64, bias_m_s2: f64) -> f64 {
         let nonlinear = a + self.k2_per_m_s2 * a * a + self.k3_per_m2_s4 * a * a * a;
@@ -100,16 +106,16 @@ pub fn simulate_run(truth: &Truth, run: u32) -> SimulatedRun {
     let mut positions = Vec::with_capacity(dials.len());
     for (i, (angle_deg, upright)) in dials.iter().enumerate() {
         let dial = angle_deg.to_radians();
-        let true_angle = if *upright {
+        let acceleration = if *upright {
             // A lean to either side costs the same: the cosine is even.
-            dial + truth.vertical_lean.rad() * normal()
+            truth.gravity_m_s2 * (dial + truth.vertical_lean.rad() * normal()).sin()
         } else {
-            truth.true_angle_rad(dial) + truth.setting_scatter.rad() * normal()
+            truth.on_table_m_s2(truth.true_angle_rad(dial) + truth.setting_scatter.rad() * normal())
         };
         let temperature_degc =
             truth.temperature_degc.map(|(from, to)| from + (to - from) * i as f64 / steps);
         let thermal = temperature_degc.map_or(0.0, |t| truth.bias_per_k_m_s2 * (t - middle));
-        let level = truth.analogue_lsb(truth.gravity_m_s2 * true_angle.sin(), bias_m_s2 + thermal);
+        let level = truth.analogue_lsb(acceleration, bias_m_s2 + thermal);
         let analogue_lsb = (0..samples)
             .map(|_| {
                 if per_sample_walk > 0.0 {
@@ -142,6 +148,7 @@ pub fn experiment(truth: &Truth) -> Experiment {
         angle_uncertainty: Some(truth.setting_scatter).filter(|s| s.rad() > 0.0),
         range: None,
         vertical_lean: truth.vertical_lean,
+        systematics: crate::systematic::Systematics::NONE,
     };
     let runs = (0..truth.runs)
         .map(|r| Run {

@@ -51,6 +51,8 @@ impl Preset {
             dial_scale: 0.0,
             eccentricity: Angle::from_rad(0.0),
             eccentricity_phase: Angle::from_rad(0.0),
+            axis_tilt: Angle::from_rad(0.0),
+            sensor_lean: Angle::from_rad(0.0),
             vertical_lean: Angle::from_arcmin(0.0),
             upright_in_each_run: false,
             quantizer: Quantizer::Truncate,

@@ -4,7 +4,8 @@ use crate::{Angle, ConverterEnds, Quantizer};
 
 /// A sensor, a table and a plan, with every error known.
 ///
-/// **Model** `φ* = φ (1 + ε_dial) + zero + e sin(φ + phase) + scatter + Δφ`, `a = g sin φ*`,
+/// **Model** `φ* = φ (1 + ε_dial) + zero + e sin(φ + phase) + scatter + Δφ`,
+/// `a = g (cos ψ cos η sin φ* + sin ψ sin η)`, upright `a = ±g cos(lean)`,
 /// `x = (a + K2 a² + K3 a³ + Δa + turn-on + c_T (T − T̄) + walk + noise) / (k0 (1 + δk))`, code `= Q[x]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Truth {
@@ -42,6 +43,10 @@ pub struct Truth {
     pub eccentricity: Angle,
     /// Phase of the eccentricity.
     pub eccentricity_phase: Angle,
+    /// Tilt `η` of the table's axis out of the horizontal.
+    pub axis_tilt: Angle,
+    /// Lean `ψ` of the sensitive axis out of the plane in which the table turns.
+    pub sensor_lean: Angle,
     /// Standard deviation of the lean of upright dwells.
     pub vertical_lean: Angle,
     /// Whether dwells with the axis up and down are taken in each run's power-up.
@@ -161,6 +166,8 @@ impl Truth {
             ("dial zero", self.dial_zero.rad()),
             ("dial scale", self.dial_scale),
             ("eccentricity", self.eccentricity.rad()),
+            ("axis tilt", self.axis_tilt.rad()),
+            ("sensor lean", self.sensor_lean.rad()),
             ("bias per kelvin", self.bias_per_k_m_s2),
         ];
         let all = positive.iter().chain(&deviations).chain(&others);

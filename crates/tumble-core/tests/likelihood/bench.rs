@@ -98,6 +98,7 @@ impl Truth {
             angle_uncertainty: self.stated_arcmin.map(Angle::from_arcmin),
             range: None,
             vertical_lean: Angle::from_arcmin(self.upright_arcmin.unwrap_or(0.0)),
+            systematics: tumble_core::systematic::Systematics::default(),
         }
     }
 

@@ -85,6 +85,8 @@ fn truth(a: &SimulateArgs) -> Truth {
         dial_scale: a.dial_scale.unwrap_or(p.dial_scale),
         eccentricity: a.eccentricity.unwrap_or(p.eccentricity),
         eccentricity_phase: a.eccentricity_phase.unwrap_or(p.eccentricity_phase),
+        axis_tilt: a.axis_tilt.unwrap_or(p.axis_tilt),
+        sensor_lean: a.sensor_lean.unwrap_or(p.sensor_lean),
         vertical_lean: a.lean.unwrap_or(p.vertical_lean),
         upright_in_each_run: a.updown,
         quantizer: a.quantizer.map_or(p.quantizer, |q| match q {

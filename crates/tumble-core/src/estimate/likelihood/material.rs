@@ -296,6 +296,7 @@ mod tests {
             angle_uncertainty: None,
             range: None,
             vertical_lean: crate::Angle::from_rad(0.0),
+            systematics: crate::systematic::Systematics::default(),
         };
         let setting = Setting {
             bench: &bench,
