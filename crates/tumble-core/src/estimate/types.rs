@@ -44,7 +44,12 @@ pub struct EstimateOptions {
 impl Default for EstimateOptions {
     /// Likelihood, both kinds of scatter, 95 % (JCGM 100: the level for expanded uncertainties).
     fn default() -> Self {
-        Self { method: Method::Likelihood, weights: Weights::Angle, level: 0.95, monte_carlo_digits: 2 }
+        Self {
+            method: Method::Likelihood,
+            weights: Weights::Angle,
+            level: 0.95,
+            monte_carlo_digits: 2,
+        }
     }
 }
 
