@@ -62,6 +62,6 @@ pub fn shared_pair(
     Some(SharedPair {
         scale_error: ratio - 1.0,
         standard_uncertainty: ratio * variance.sqrt() / full_scale,
-        lean_correction: -ratio * lean,
+        lean_correction: -lean * g / (half * k0),
     })
 }

@@ -33,7 +33,7 @@ pub fn runs_differ(pooled: &[PooledParameter]) -> Vec<Finding> {
                     p.parameter.shown(omega)
                 ),
                 limit: format!("p = {DIFFER}"),
-                remedy: "nothing: it is in the result; for the next power-up use the prediction for its true value".into(),
+                remedy: "nothing, where the type of sensor is like that: the result and its predictions hold it".into(),
             })
         })
         .collect()
