@@ -97,7 +97,14 @@ fn experiment(positions: Vec<Position>) -> Experiment {
         },
         bench: bench(),
         vertical: None,
-        runs: vec![Run { name: "run".into(), mounting: "A".into(), positions, date: None }],
+        runs: vec![Run {
+            name: "run".into(),
+            mounting: "A".into(),
+            positions,
+            date: None,
+            orientation: tumble_core::Orientation::Normal,
+        }],
+        specification: tumble_core::decision::Specification::default(),
         targets: Targets::default(),
     }
 }

@@ -114,11 +114,6 @@ fn pooled_coverage(n: usize, between: f64) -> Coverage {
     use rand_core::SeedableRng;
     use rand_distr::{ChiSquared, Distribution, StandardNormal};
     use tumble_core::assess::pool;
-    let gravity = tumble_core::Gravity {
-        value_m_s2: 9.81,
-        standard_uncertainty_m_s2: 0.0,
-        source: tumble_core::GravitySource::Stated,
-    };
     let mut rng = rand_pcg::Pcg64::seed_from_u64(9);
     let chi = ChiSquared::new(57.0).unwrap();
     let template = assess(

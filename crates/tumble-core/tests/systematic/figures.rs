@@ -10,7 +10,12 @@ fn effect(plan_name: &str, q: Quantity) -> ([f64; 3], f64) {
     let b: Bench = bench(0.0);
     let positions = run(&plan(plan_name), &b, &Errors::default(), 1e-3, 1);
     let refs: Vec<&Position> = positions.iter().collect();
-    let options = EstimateOptions { method: Method::Exact, weights: Weights::Equal, level: 0.95 };
+    let options = EstimateOptions {
+        method: Method::Exact,
+        weights: Weights::Equal,
+        level: 0.95,
+        ..EstimateOptions::default()
+    };
     let at = estimate(&refs, &setting(&b), &options).unwrap();
     let sites = Sites::of(&at, &refs, &setting(&b), 1.0).unwrap();
     let lsb = pattern(q, &sites, &setting(&b)).unwrap();

@@ -36,7 +36,12 @@ const ALONE: [Quantity; 10] = [
 
 fn fit(positions: &[Position], bench: &Bench, method: Method) -> Estimate {
     let refs: Vec<&Position> = positions.iter().collect();
-    let options = EstimateOptions { method, weights: Weights::Angle, level: 0.95 };
+    let options = EstimateOptions {
+        method,
+        weights: Weights::Angle,
+        level: 0.95,
+        ..EstimateOptions::default()
+    };
     estimate(&refs, &setting(bench), &options).unwrap()
 }
 
@@ -77,7 +82,12 @@ struct Comparison {
 impl Comparison {
     fn fit(&self, positions: &[Position], bench: &Bench) -> Estimate {
         let refs: Vec<&Position> = positions.iter().collect();
-        let options = EstimateOptions { method: self.method, weights: self.weights, level: 0.95 };
+        let options = EstimateOptions {
+            method: self.method,
+            weights: self.weights,
+            level: 0.95,
+            ..EstimateOptions::default()
+        };
         estimate(&refs, &setting(bench), &options).unwrap()
     }
 
