@@ -112,6 +112,7 @@ fn blank() -> Experiment {
 
 fn pooled(parameter: Parameter, value: f64, expanded: f64) -> PooledParameter {
     PooledParameter {
+        dominant: None,
         parameter,
         mounting: None,
         runs: 3,
@@ -148,6 +149,7 @@ fn judged(u: &Unit) -> Vec<Finding> {
         pooled(Parameter::ScaleError, 1.0, 2.0 * u.u_scale),
     ];
     let runs = [RunAssessment {
+        effects: None,
         name: "run-1".into(),
         mounting: "A".into(),
         orientation: tumble_core::Orientation::Normal,
