@@ -38,6 +38,7 @@ pub fn run(
     options: &EstimateOptions,
 ) -> RunAssessment {
     RunAssessment {
+        effects: None,
         name: mounting.into(),
         mounting: mounting.into(),
         orientation,

@@ -7,7 +7,7 @@ use tumble_core::{
     Angle, Experiment, FindingKind, Orientation, PairUse, Position, Seat, VerticalPair,
 };
 
-use super::bench::{GRAVITY, covers, find, quiet_table, run, setting};
+use super::bench::{covers, find, quiet_table, run, setting};
 
 const OPTIONS: EstimateOptions = EstimateOptions {
     method: Method::Exact,

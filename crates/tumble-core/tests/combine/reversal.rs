@@ -5,7 +5,7 @@ use tumble_core::estimate::{EstimateOptions, Method, Parameter, Weights};
 use tumble_core::simulate::{Truth, experiment};
 use tumble_core::{Angle, FindingKind, Orientation};
 
-use super::bench::{GRAVITY, covers, find, quiet_table, runs};
+use super::bench::{covers, find, quiet_table, runs};
 
 const OPTIONS: EstimateOptions = EstimateOptions {
     method: Method::Exact,

@@ -7,7 +7,7 @@ use tumble_core::linalg::Symmetric3;
 use tumble_core::simulate::{Truth, experiment};
 use tumble_core::{FindingKind, Orientation};
 
-use super::bench::{GRAVITY, find, quiet_table, runs};
+use super::bench::{find, quiet_table, runs};
 use super::oracle::bias_only;
 
 #[test]

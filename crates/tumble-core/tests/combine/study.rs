@@ -5,7 +5,7 @@ use tumble_core::estimate::{EstimateOptions, Method, Parameter, Weights};
 use tumble_core::simulate::{Truth, parse_plan};
 use tumble_core::{Angle, Orientation};
 
-use super::bench::{GRAVITY, covers, find, fraction_se, quiet_table, runs};
+use super::bench::{covers, find, fraction_se, quiet_table, runs};
 
 /// Twelve positions a run: nine degrees of freedom for the covariance.
 #[test]
