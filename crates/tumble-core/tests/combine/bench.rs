@@ -5,8 +5,6 @@ use tumble_core::estimate::{EstimateOptions, Parameter, Setting, estimate};
 use tumble_core::simulate::{Preset, Truth, experiment};
 use tumble_core::{Angle, Experiment, Gravity, GravitySource, Orientation, Position};
 
-pub const GRAVITY: Gravity =
-    Gravity { value_m_s2: 9.81, standard_uncertainty_m_s2: 0.0, source: GravitySource::Stated };
 
 /// The bench of method section 7: 0.2 LSB of scatter a position, in ten samples a dwell.
 pub fn quiet_table() -> Truth {

@@ -13,7 +13,7 @@ const OPTIONS: EstimateOptions = EstimateOptions {
     method: Method::Exact,
     weights: Weights::Equal,
     level: 0.95,
-    ..EstimateOptions::default()
+    monte_carlo_digits: 0,
 };
 
 fn with_pair(truth: &Truth) -> Experiment {

@@ -11,7 +11,7 @@ const OPTIONS: EstimateOptions = EstimateOptions {
     method: Method::Exact,
     weights: Weights::Equal,
     level: 0.95,
-    ..EstimateOptions::default()
+    monte_carlo_digits: 0,
 };
 
 /// `ε` of the table, `δ` of the body, rad.
