@@ -3,6 +3,7 @@
 //! Past 500 lines: runs and the up/down pair share the reader and its checks of paths; the pair is the next to move out.
 
 mod settings;
+mod systematics;
 
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
@@ -21,6 +22,7 @@ use crate::experiment_file::{
 };
 use crate::source::{DOCUMENT_LIMIT, Watch, read_document};
 use settings::{bench, dialect, discard, mapping, missing, output, targets, value};
+use systematics::systematics;
 
 /// Name of the file that makes a folder an experiment.
 pub(crate) const EXPERIMENT_FILE: &str = "experiment.toml";
@@ -127,7 +129,7 @@ fn read_parsed(
         return Err(value("issued", day, "a day as YYYY-MM-DD, for instance 2026-11-23"));
     }
     let output = output(&file.output)?;
-    let bench = bench(&file.bench)?;
+    let bench = Bench { systematics: systematics(file)?, ..bench(&file.bench)? };
     let names = run_names(&file.run)?;
     let mut inputs =
         vec![FileDigest { file: EXPERIMENT_FILE.into(), sha256: crate::digest::sha256(bytes) }];
