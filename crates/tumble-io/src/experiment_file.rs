@@ -39,6 +39,8 @@ pub(crate) struct SensorTable {
     pub(crate) serial: String,
     #[serde(default)]
     pub(crate) axis: String,
+    pub(crate) k2_uncertainty_ug_per_g2: Option<f64>,
+    pub(crate) k3_uncertainty_ug_per_g3: Option<f64>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -59,6 +61,9 @@ pub(crate) struct OutputTable {
     pub(crate) rate_hz: Option<f64>,
     pub(crate) min_code: Option<i32>,
     pub(crate) max_code: Option<i32>,
+    pub(crate) nonlinearity_lsb: Option<f64>,
+    pub(crate) reference_uncertainty_ppm: Option<f64>,
+    pub(crate) resolution: Option<f64>,
 }
 
 #[derive(Debug, Clone, Deserialize)]
@@ -74,6 +79,12 @@ pub(crate) struct BenchTable {
     pub(crate) angle_zero_deg: Option<f64>,
     pub(crate) angle_unit: Option<String>,
     pub(crate) updown_lean_arcmin: Option<f64>,
+    pub(crate) dial_scale_uncertainty_ppm: Option<f64>,
+    pub(crate) eccentricity_arcmin: Option<f64>,
+    pub(crate) angle_zero_uncertainty_arcmin: Option<f64>,
+    pub(crate) axis_tilt_arcmin: Option<f64>,
+    pub(crate) sensor_lean_arcmin: Option<f64>,
+    pub(crate) temperature_spread_k: Option<f64>,
 }
 
 /// How the run files are written.

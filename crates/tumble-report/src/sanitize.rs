@@ -102,6 +102,8 @@ fn unreadable() -> Passport {
             angle_uncertainty_arcmin: None,
             angle_range_deg: None,
             updown_lean_arcmin: 0.0,
+            systematics: Vec::new(),
+            temperature_spread_k: None,
         },
         method: unknown(),
         nominal_scale_m_s2_per_lsb: 0.0,

@@ -71,6 +71,7 @@ fn distance(predicted: [f64; 3], observed: [f64; 3], u: [f64; 3]) -> (f64, f64) 
 struct Comparison {
     method: Method,
     weights: Weights,
+    plans: &'static [&'static str],
     /// Random scatter of the angles, arcminutes.
     scatter_arcmin: f64,
     /// Of the effect.
@@ -94,7 +95,7 @@ impl Comparison {
     fn run(&self) {
         let inputs = inputs();
         let mut worst = (0.0, String::new());
-        for name in PLANS {
+        for name in self.plans {
             let (angles, bench) = (plan(name), bench(3.0));
             let with = |e: &Errors| run(&angles, &bench, e, self.scatter_arcmin, 7);
             let base = with(&Errors::default());
@@ -147,6 +148,7 @@ fn exact() {
     Comparison {
         method: Method::Exact,
         weights: Weights::Angle,
+        plans: &PLANS,
         scatter_arcmin: 0.0,
         relative: 0.003,
         by_residuals: 0.0,
@@ -159,6 +161,7 @@ fn paper() {
     Comparison {
         method: Method::Paper,
         weights: Weights::Equal,
+        plans: &PLANS,
         scatter_arcmin: 0.0,
         relative: 0.001,
         by_residuals: 0.0,
@@ -172,6 +175,7 @@ fn likelihood_of_one_kind_of_scatter() {
     Comparison {
         method: Method::Likelihood,
         weights: Weights::Equal,
+        plans: &PLANS,
         scatter_arcmin: 1.0,
         relative: 0.01,
         by_residuals: 0.0,
@@ -186,9 +190,25 @@ fn likelihood_of_both_kinds_of_scatter() {
     Comparison {
         method: Method::Likelihood,
         weights: Weights::Angle,
+        plans: &["narrow", "wide", "three"],
         scatter_arcmin: 1.0,
         relative: 0.01,
-        by_residuals: 2.0,
+        by_residuals: 1.0,
+    }
+    .run();
+}
+
+/// Two upright dwells weigh as much as the scatter of the others says, and an error of the table sets the two kinds against each
+/// other: over 30 samples the mean effect of the dial's scale is 4 % more than the derivative, that of eccentricity 20 %.
+#[test]
+fn likelihood_with_upright_dwells() {
+    Comparison {
+        method: Method::Likelihood,
+        weights: Weights::Angle,
+        plans: &["upright"],
+        scatter_arcmin: 1.0,
+        relative: 0.05,
+        by_residuals: 3.0,
     }
     .run();
 }

@@ -4,6 +4,7 @@
 
 mod settings;
 mod spec;
+mod systematics;
 
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
@@ -22,6 +23,7 @@ use crate::experiment_file::{
 };
 use crate::source::{DOCUMENT_LIMIT, Watch, read_document};
 use settings::{bench, dialect, discard, mapping, missing, output, targets, value};
+use systematics::systematics;
 
 /// Name of the file that makes a folder an experiment.
 pub(crate) const EXPERIMENT_FILE: &str = "experiment.toml";
@@ -128,7 +130,7 @@ fn read_parsed(
         return Err(value("issued", day, "a day as YYYY-MM-DD, for instance 2026-11-23"));
     }
     let output = output(&file.output)?;
-    let bench = bench(&file.bench)?;
+    let bench = Bench { systematics: systematics(file)?, ..bench(&file.bench)? };
     let specification = spec::specification(&file.spec)?;
     let names = run_names(&file.run)?;
     let mut inputs =

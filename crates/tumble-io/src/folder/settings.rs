@@ -169,6 +169,7 @@ pub(super) fn bench(table: &BenchTable) -> Result<Bench, ReadError> {
             not_negative("[bench] updown_lean_arcmin", table.updown_lean_arcmin, arcmin)?
                 .unwrap_or(DEFAULT_VERTICAL_LEAN_ARCMIN),
         ),
+        systematics: tumble_core::systematic::Systematics::default(),
     })
 }
 

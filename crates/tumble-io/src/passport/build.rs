@@ -5,6 +5,7 @@ use tumble_core::estimate::{
     Estimate as RunFit, EstimateOptions, Method, Parameter, Ranged, Split, Weights,
 };
 use tumble_core::linalg::Matrix;
+use tumble_core::systematic::{Input, Inputs};
 use tumble_core::term::TermTest;
 use tumble_core::{
     ARCMIN_RAD, Experiment, GravitySource, NominalScaleSource, Quantizer, QuantizerOffset,
@@ -56,7 +57,7 @@ pub fn build(
             min_code: experiment.output.ends.min_code.map(|c| c.0),
             max_code: experiment.output.ends.max_code.map(|c| c.0),
         },
-        bench: bench(experiment),
+        bench: bench(experiment, assessment.nominal_scale.value_m_s2_per_lsb),
         method: method_name(options.method).into(),
         nominal_scale_m_s2_per_lsb: assessment.nominal_scale.value_m_s2_per_lsb,
         nominal_scale_source: match assessment.nominal_scale.source {
@@ -150,8 +151,9 @@ fn sentence(f: &wire::Finding) -> String {
     format!("{} {}{place}: {}. What to do: {}.", f.id, f.title, f.observed, f.todo)
 }
 
-fn bench(experiment: &Experiment) -> wire::Bench {
+fn bench(experiment: &Experiment, k0: f64) -> wire::Bench {
     let b = &experiment.bench;
+    let inputs = Inputs::of(experiment, k0);
     wire::Bench {
         gravity_m_s2: wire::Gravity {
             value: b.gravity.value_m_s2,
@@ -167,6 +169,18 @@ fn bench(experiment: &Experiment) -> wire::Bench {
         angle_uncertainty_arcmin: b.angle_uncertainty.map(tumble_core::Angle::arcmin),
         angle_range_deg: b.range.map(|(lo, hi)| [lo.deg(), hi.deg()]),
         updown_lean_arcmin: b.vertical_lean.arcmin(),
+        systematics: inputs.lines.iter().map(systematic).collect(),
+        temperature_spread_k: Some(inputs.temperature_spread_k),
+    }
+}
+
+fn systematic(line: &Input) -> wire::Systematic {
+    wire::Systematic {
+        quantity: line.quantity.name().into(),
+        standard_uncertainty: line.standard_uncertainty,
+        unit: line.quantity.unit().into(),
+        distribution: line.shape.name().into(),
+        source: line.source.clone(),
     }
 }
 

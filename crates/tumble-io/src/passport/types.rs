@@ -143,6 +143,21 @@ pub struct Bench {
     pub angle_uncertainty_arcmin: Option<f64>,
     pub angle_range_deg: Option<[f64; 2]>,
     pub updown_lean_arcmin: f64,
+    /// Errors that no scatter shows, common to all runs.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub systematics: Vec<Systematic>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub temperature_spread_k: Option<f64>,
+}
+
+/// A systematic error as it was stated, or with its default.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Systematic {
+    pub quantity: String,
+    pub standard_uncertainty: f64,
+    pub unit: String,
+    pub distribution: String,
+    pub source: String,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
