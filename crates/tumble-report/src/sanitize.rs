@@ -123,6 +123,7 @@ fn unreadable() -> Passport {
             method: unknown(),
             weights: unknown(),
             level: 0.0,
+            monte_carlo_digits: 0,
             targets: p::Targets { bias_m_s2: 0.0, misalignment_rad: 0.0, scale_error: 0.0 },
         },
         software: p::Software { name: unknown(), version: String::new(), target: String::new() },

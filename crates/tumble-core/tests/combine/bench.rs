@@ -3,8 +3,7 @@
 use tumble_core::assess::{PooledParameter, RunAssessment};
 use tumble_core::estimate::{EstimateOptions, Parameter, Setting, estimate};
 use tumble_core::simulate::{Preset, Truth, experiment};
-use tumble_core::{Angle, Experiment, Gravity, GravitySource, Orientation, Position};
-
+use tumble_core::{Angle, Experiment, Orientation, Position};
 
 /// The bench of method section 7: 0.2 LSB of scatter a position, in ten samples a dwell.
 pub fn quiet_table() -> Truth {
