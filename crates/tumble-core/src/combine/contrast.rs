@@ -104,6 +104,8 @@ fn finished(scaled: &Scaled, part: Part, p: usize) -> Contrast {
     let total: f64 = part.variances.iter().sum();
     let (ratio, degrees_of_freedom, basis) = if part.expected >= ENOUGH {
         let dof = part.expected * part.expected / part.squares;
+        // Whole for runs of one plan, but for rounding.
+        let dof = if (dof - dof.round()).abs() < 1e-6 { dof.round() } else { dof };
         (part.seen / part.expected, dof, Basis::Scatter)
     } else {
         let of_unit = |(u, v): (&ScaledUnit, &f64)| v * v / u.dof[entry];
