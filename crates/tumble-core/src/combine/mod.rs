@@ -80,7 +80,8 @@ pub struct Combined {
 /// **Model** `V_r = C_r + Ω`, `μ̂ = Σ A_r θ̂_r`, `A_r = (Σ X'V⁻¹X)⁻¹ X_r' V_r⁻¹`. For column `p` let `a_r` be row `p` of `A_r`,
 /// `z_r = a_r·(θ̂_r − X_r μ̂)`, `v_r = a_r' V_r a_r`: then `u² = q Σ v_r`, `q = Σ z_r²/v_r / E[Σ z_r²/v_r]` over the units that
 /// have the parameter, with Satterthwaite's degrees of freedom. With equal `C_r` that is the mean, `s/√k` and `k − 1`. A column with
-/// too few units to scatter (a mounting of one run) is estimated from its own entry alone, with the units' own variances.
+/// too few units to scatter (a mounting of one run) is estimated from its own entry alone, with the units' own variances;
+/// one of several columns of an entry (mountings, the table's zero) from its own entry alone where fewer than ten units scatter.
 ///
 /// **Errors** [`CombineError`].
 ///

@@ -140,6 +140,13 @@ for name, args in {
     mu, M, ll = gls(units, P, om)
     entry = [0, 2] + [1] * (P - 2)
     hk = [hartung_knapp(units, P, om, mu, M, c, entry[c]) for c in range(P)]
+    if P > 3:
+        # Several columns of one entry, few units: from that entry alone.
+        far = om.copy(); far[[0, 2]] = 1e8 * np.array([units[0][2][0, 0], units[0][2][2, 2]])
+        mu2, M2, _ = gls(units, P, far)
+        for c in range(2, P):
+            hk[c] = hartung_knapp(units, P, far, mu2, M2, c, 1)
+            mu[c] = mu2[c]
     print(f"    // {name}\n    Multivariate {{ units: &[")
     for (idx, y, C, X) in units:
         c = C.tolist()
