@@ -245,6 +245,32 @@ mod tests {
         }
     }
 
+    /// Method section 10: 1° of tilt and of lean takes 305 ppm off the scale and adds 3.0 mm/s², upright dwells apart.
+    #[test]
+    fn tilt_and_lean_act_on_the_table_alone() {
+        let level = Truth {
+            angles_deg: vec![60.0, 0.0, 90.0],
+            dwell_s: 0.02,
+            runs: 1,
+            noise_m_s2: 0.0,
+            setting_scatter: crate::Angle::from_rad(0.0),
+            ..Preset::Paper1.truth()
+        };
+        let degree = crate::Angle::from_deg(1.0);
+        let tilted = Truth { axis_tilt: degree, sensor_lean: degree, ..level.clone() };
+        let samples = |t: &Truth| simulate_run(t, 0).positions;
+        let k = level.actual_scale_m_s2_per_lsb();
+        let gains: Vec<f64> = samples(&tilted)
+            .iter()
+            .zip(samples(&level))
+            .map(|(t, l)| (t.analogue_lsb[0] - l.analogue_lsb[0]) * k)
+            .collect();
+        assert!((gains[1] - 2.988e-3).abs() < 1e-6, "{gains:?}");
+        let scale = (gains[0] - gains[1]) / (9.81 * 60f64.to_radians().sin());
+        assert!((scale + 3.046e-4).abs() < 1e-7, "{gains:?}");
+        assert_eq!(gains[2], 0.0);
+    }
+
     #[test]
     fn the_converter_holds_at_its_ends() {
         let mut truth = Preset::Paper1.truth();
