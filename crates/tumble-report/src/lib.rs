@@ -17,6 +17,7 @@ mod figure;
 mod html;
 mod merge;
 mod numbers;
+mod outliers;
 mod runs;
 mod sanitize;
 mod standing;

@@ -2,6 +2,7 @@
 
 mod error_level;
 mod influence;
+mod outliers;
 mod pool;
 mod repeat;
 mod result;
@@ -9,14 +10,18 @@ mod verdict;
 
 pub use error_level::{ErrorLevel, RunErrorLevel, error_level};
 pub use influence::{Influence, InfluenceTest, influence};
+pub use outliers::{Change, LeftOut, Outlier, Outliers, WithAndWithout};
 pub use pool::{Interval, PooledParameter, in_lsb, pool, scale_factor};
 pub use repeat::repeated_share;
 pub use result::{BudgetLine, CompensationResult, compensation_result};
 pub use verdict::{Verdict, may_carry_result, verdict};
 
 pub(crate) use influence::SIGNIFICANCE as INFLUENCE_SIGNIFICANCE;
+pub(crate) use outliers::LEAVABLE_SHARE;
 pub(crate) use repeat::LIMIT as REPEAT_LIMIT;
 pub(crate) use verdict::for_want_of_runs;
+
+use outliers::Material;
 
 use crate::estimate::{
     Estimate, EstimateOptions, Residual, Setting, Weights, determines_all, estimate,
@@ -40,6 +45,8 @@ pub struct Assessment {
     pub structure: Option<Structure>,
     /// Temperature and signal level.
     pub influence: Influence,
+    /// Positions that do not belong, and those that the user left out.
+    pub outliers: Outliers,
     /// Before and after compensation.
     pub error_level: Option<ErrorLevel>,
     /// Uncertainty that does not show in the scatter.
@@ -85,6 +92,20 @@ pub enum AssessError {
     NominalScale(NominalScaleError),
     /// [`Weights::Stated`] without a stated angle uncertainty.
     NothingStated,
+    /// Positions are to be left out of a run that is not there.
+    NoSuchRun {
+        /// As it was asked for.
+        run: String,
+        /// Names of the runs.
+        known: Vec<String>,
+    },
+    /// A position is to be left out that is not there.
+    NoSuchPosition {
+        /// As it was asked for.
+        asked: LeftOut,
+        /// Positions of that run.
+        positions: usize,
+    },
 }
 
 impl std::fmt::Display for AssessError {
@@ -94,6 +115,16 @@ impl std::fmt::Display for AssessError {
             Self::NothingStated => f.write_str(
                 "--weights stated takes the angle uncertainty as known, and none is stated: give \
                  angle_uncertainty_arcmin in [bench], or leave --weights out",
+            ),
+            Self::NoSuchRun { run, known } => write!(
+                f,
+                "no run is named `{run}`, of which positions are to be left out; the runs are {}",
+                known.join(", ")
+            ),
+            Self::NoSuchPosition { asked, positions } => write!(
+                f,
+                "{} has no position {} to leave out: its positions are 1 to {positions}, in measured order",
+                asked.run, asked.position
             ),
         }
     }
@@ -111,6 +142,18 @@ pub fn assess(
     experiment: &Experiment,
     options: &EstimateOptions,
 ) -> Result<Assessment, AssessError> {
+    assess_without(experiment, options, &[])
+}
+
+/// [`assess`], with positions left out of the adjustment as the user decided; findings and result say so.
+///
+/// **Errors** [`AssessError::NoSuchRun`], [`AssessError::NoSuchPosition`] for what is not there to be left out.
+pub fn assess_without(
+    experiment: &Experiment,
+    options: &EstimateOptions,
+    left_out: &[LeftOut],
+) -> Result<Assessment, AssessError> {
+    all_there(experiment, left_out)?;
     if options.weights == Weights::Stated && experiment.bench.angle_uncertainty.is_none() {
         return Err(AssessError::NothingStated);
     }
@@ -126,9 +169,14 @@ pub fn assess(
         ends: experiment.output.ends,
         nominal_scale_m_s2_per_lsb: k0.value_m_s2_per_lsb,
     };
-    let mut runs = Vec::new();
-    for (run, candidates) in adjusted_runs(experiment) {
-        runs.push(assess_run(experiment, &setting, options, &run, candidates, &mut findings));
+    let adjusted = adjusted_runs(experiment);
+    let (mut runs, mut materials) = (Vec::new(), Vec::new());
+    for (run, candidates) in &adjusted {
+        let candidates = (candidates.clone(), left_out);
+        let (assessed, material) =
+            assess_run(experiment, &setting, options, run, candidates, &mut findings);
+        runs.push(assessed);
+        materials.push(material);
     }
     judge::some_runs_reversed(&mut findings, &experiment.runs);
 
@@ -156,6 +204,7 @@ pub fn assess(
             influence: &influence,
         }));
     }
+    let outliers = outlier_findings(&materials, &runs, &pooled, (&setting, options), &mut findings);
     let error_level = error_level(&runs, &setting);
     findings.extend(error_level.iter().filter_map(ErrorLevel::finding));
     findings.push(budget_finding());
@@ -175,6 +224,7 @@ pub fn assess(
         pooled,
         structure,
         influence,
+        outliers,
         error_level,
         budget,
         compensation,
@@ -213,14 +263,56 @@ fn adjusted_runs(experiment: &Experiment) -> Vec<(Run, Vec<&Position>)> {
         .collect()
 }
 
-fn assess_run(
+/// Everything that is to be left out must be there.
+fn all_there(experiment: &Experiment, left_out: &[LeftOut]) -> Result<(), AssessError> {
+    for asked in left_out {
+        let run = experiment.runs.iter().find(|r| r.name == asked.run).ok_or_else(|| {
+            let known = experiment.runs.iter().map(|r| r.name.clone()).collect();
+            AssessError::NoSuchRun { run: asked.run.clone(), known }
+        })?;
+        if !(1..=run.positions.len()).contains(&asked.position) {
+            let positions = run.positions.len();
+            return Err(AssessError::NoSuchPosition { asked: asked.clone(), positions });
+        }
+    }
+    Ok(())
+}
+
+/// Positions that do not belong or were left out, with what they do to the results.
+fn outlier_findings(
+    materials: &[Material<'_>],
+    runs: &[RunAssessment],
+    pooled: &[PooledParameter],
+    (setting, options): (&Setting<'_>, &EstimateOptions),
+    findings: &mut Vec<Finding>,
+) -> Outliers {
+    let g = &setting.bench.gravity;
+    let again = outliers::Again {
+        fit: &|positions| estimate(positions, setting, options).ok(),
+        pool: &|runs| pool(runs, g, options.level),
+        level: options.level,
+        least_sd_lsb: judge::limits::LEAST_SCATTER_RAD * g.value_m_s2
+            / setting.nominal_scale_m_s2_per_lsb,
+    };
+    // Data that contradict the model as a whole have no single position to blame.
+    let contradicted = findings.iter().any(|f| {
+        f.kind.severity() == crate::Severity::Reject && f.kind != FindingKind::MistypedAngle
+    });
+    let seek = if contradicted { outliers::Seek::Named } else { outliers::Seek::All };
+    let found = outliers::outliers(materials, runs, pooled, &again, seek);
+    let more = outliers::findings(&found, materials, runs, findings);
+    findings.extend(more);
+    found
+}
+
+fn assess_run<'a>(
     experiment: &Experiment,
     setting: &Setting<'_>,
     options: &EstimateOptions,
-    run: &Run,
-    candidates: Vec<&Position>,
+    run: &'a Run,
+    (candidates, left_out): (Vec<&'a Position>, &[LeftOut]),
     findings: &mut Vec<Finding>,
-) -> RunAssessment {
+) -> (RunAssessment, Material<'a>) {
     let bench = &experiment.bench;
     let k0 = setting.nominal_scale_m_s2_per_lsb;
     // The paper's adjustment uses [scale] for k0 alone.
@@ -230,6 +322,8 @@ fn assess_run(
         }
         _ => candidates,
     };
+    let (numbered, omitted) = outliers::split(run, candidates, left_out);
+    let candidates: Vec<&Position> = numbered.iter().map(|(_, p)| *p).collect();
     // Bounds refine what the other dwells determine; alone they are no start.
     let whole: Vec<&Position> = candidates
         .iter()
@@ -244,8 +338,8 @@ fn assess_run(
     };
     let output = &experiment.output;
     let usable = judge::usable_positions(run, candidates.clone(), output, bench, k0, censored);
-    let hygiene =
-        judge::data_hygiene(&run.name, &candidates, output, bench, &usable.findings).findings;
+    let judge::Hygiene { findings: hygiene, noticed } =
+        judge::data_hygiene(&run.name, &candidates, output, bench, &usable.findings);
     let contradicted = hygiene.iter().any(|f| f.kind.severity() == crate::Severity::Reject);
     findings.extend(usable.findings);
     findings.extend(hygiene);
@@ -257,7 +351,12 @@ fn assess_run(
     }
     let variances: Vec<f64> =
         positions.iter().filter_map(|p| p.readings.std()).map(|s| s * s).collect();
-    RunAssessment {
+    let material = Material {
+        used: outliers::numbered(&numbered, &positions),
+        left_out: omitted,
+        noticed: noticed.into_iter().filter_map(|(i, k)| Some((numbered[i].0?, k))).collect(),
+    };
+    let assessed = RunAssessment {
         name: run.name.clone(),
         mounting: run.mounting.clone(),
         estimate,
@@ -270,7 +369,8 @@ fn assess_run(
             .collect(),
         temperatures_degc: positions.iter().map(|p| p.temperature_degc).collect(),
         reading_std_lsb: crate::stats::mean(&variances).map(f64::sqrt),
-    }
+    };
+    (assessed, material)
 }
 
 /// What a run's estimate says. Values from data that are known to be wrong (`contradicted`) are not held against what

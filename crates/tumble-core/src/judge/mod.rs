@@ -2,6 +2,7 @@
 //!
 //! Each file looks at one thing and returns findings; the verdict follows from their severities alone.
 
+mod belonging;
 mod dwell_fit;
 mod hygiene;
 mod identifiable;
@@ -24,6 +25,7 @@ mod upright;
 mod wrap;
 mod zero_rows;
 
+pub use belonging::{Belonging, FALSE_ALARM, belonging, of_farthest};
 pub use hygiene::{Censored, Usable, identical_runs, usable_positions};
 pub use identifiable::{determined_result, determined_run, few_angles};
 pub use plausible::plausible;
@@ -38,7 +40,7 @@ pub use type_limits::{Judged, type_limits};
 /// Thresholds that the explanations name, so that text and judgement cannot drift apart.
 pub(crate) mod limits {
     pub(crate) use super::dwell_fit::{
-        FEWEST as FEWEST_DWELLS, LEVEL as MISFIT_LEVEL, WRONG_SHARE,
+        FEWEST as FEWEST_DWELLS, LEAST_SCATTER_RAD, LEVEL as MISFIT_LEVEL, WRONG_SHARE,
     };
     pub(crate) use super::hygiene::STUCK_LIMIT_LSB;
     pub(crate) use super::identifiable::CONDITION_WARNING;
