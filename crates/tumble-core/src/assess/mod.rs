@@ -322,7 +322,8 @@ fn assess_run<'a>(
         }
         _ => candidates,
     };
-    let (numbered, omitted) = outliers::split(run, candidates, left_out);
+    let Material { used: numbered, left_out: omitted, .. } =
+        outliers::split(run, candidates, left_out);
     let candidates: Vec<&Position> = numbered.iter().map(|(_, p)| *p).collect();
     // Bounds refine what the other dwells determine; alone they are no start.
     let whole: Vec<&Position> = candidates

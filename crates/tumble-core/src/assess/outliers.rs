@@ -11,6 +11,8 @@ use crate::{Finding, FindingKind, Position, Run, Seat};
 pub(crate) const LEAVABLE_SHARE: usize = 10;
 /// Most positions of a run whose effect is worked out: each costs a re-fit.
 const MOST: usize = 12;
+/// Most positions of an experiment whose effect on the pooled values is worked out: each puts all runs together anew.
+const MOST_POOLED: usize = 100;
 
 /// A position that the user leaves out of the adjustment.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -105,17 +107,17 @@ pub(super) fn split<'a>(
     run: &Run,
     candidates: Vec<&'a Position>,
     left_out: &[LeftOut],
-) -> (Vec<(Option<usize>, &'a Position)>, Vec<(usize, &'a Position)>) {
+) -> Material<'a> {
     let before = candidates.len().saturating_sub(run.positions.len());
     let is_out = |n: usize| left_out.iter().any(|l| l.run == run.name && l.position == n);
-    let (mut kept, mut out) = (Vec::new(), Vec::new());
+    let mut material = Material::default();
     for (i, p) in candidates.into_iter().enumerate() {
         match (i + 1).checked_sub(before).filter(|n| *n > 0) {
-            Some(n) if is_out(n) => out.push((n, p)),
-            number => kept.push((number, p)),
+            Some(n) if is_out(n) => material.left_out.push((n, p)),
+            number => material.used.push((number, p)),
         }
     }
-    (kept, out)
+    material
 }
 
 /// The numbers of positions that were chosen among numbered ones, in the same order.
@@ -147,7 +149,8 @@ pub(super) fn outliers(
         else {
             continue;
         };
-        let study = Study { material, index, runs, pooled, estimate, again, tests };
+        let pools = positions.len() < MOST_POOLED;
+        let study = Study { material, index, runs, pooled, estimate, again, tests, pools };
         positions.extend(study.positions(names));
     }
     Outliers { positions, comparison: comparison(materials, runs, pooled, again) }
@@ -171,6 +174,8 @@ struct Study<'s> {
     estimate: &'s Estimate,
     again: &'s Again<'s>,
     tests: usize,
+    /// Whether the pooled values are worked out, too.
+    pools: bool,
 }
 
 impl Study<'_> {
@@ -256,7 +261,7 @@ impl Study<'_> {
         Outlier {
             named_by: Some(by),
             effect: without.as_ref().and_then(|e| self.change(self.estimate, e)),
-            pooled_effect: without.and_then(|e| {
+            pooled_effect: without.filter(|_| self.pools).and_then(|e| {
                 self.pooled_change(self.pooled, &(self.again.pool)(&self.with_estimate(e)))
             }),
             ..self.outlier(number.unwrap_or(0), position, held)
@@ -271,7 +276,7 @@ impl Study<'_> {
         Outlier {
             left_out: true,
             effect: with.as_ref().and_then(|e| self.change(e, self.estimate)),
-            pooled_effect: with.and_then(|e| {
+            pooled_effect: with.filter(|_| self.pools).and_then(|e| {
                 self.pooled_change(&(self.again.pool)(&self.with_estimate(e)), self.pooled)
             }),
             ..self.outlier(number, position, held)

@@ -8,7 +8,12 @@ use tumble_core::{Angle, Experiment, FindingKind, Quantizer, Readings};
 const LSB: f64 = 0.007_69;
 
 fn bench(plan: &str, runs: u32) -> Experiment {
+    seeded(plan, runs, Preset::Paper1.truth().seed)
+}
+
+fn seeded(plan: &str, runs: u32, seed: u64) -> Experiment {
     let mut e = experiment(&Truth {
+        seed,
         angles_deg: parse_plan(plan).unwrap(),
         quantizer: Quantizer::Floor,
         dwell_s: 6.0,
@@ -32,6 +37,44 @@ fn shifted(mut e: Experiment, run: usize, dwell: usize, lsb: f64) -> Experiment 
     p.readings =
         Readings::Averaged { mean: r.mean().unwrap() + lsb, samples: r.samples(), std: r.std() };
     e
+}
+
+/// Through everything, three runs an experiment: hygiene before it and the rule after it.
+#[test]
+fn honest_experiments_name_a_position_as_seldom_as_stated() {
+    let n = crate::study::runs(250, 5_000);
+    for (plan, seed) in [("-60:60:60", 0), ("-60:60:12", 100_000)] {
+        let named: usize = crate::study::each(n, |i| {
+            let e = seeded(plan, 3, seed + i);
+            let found = assess(&e, &EstimateOptions::default()).unwrap().findings;
+            usize::from(found.iter().any(|f| f.kind == FindingKind::DoesNotBelong))
+        })
+        .iter()
+        .sum();
+        let (rate, se) = (named as f64 / n as f64, crate::study::fraction_se(0.01, n));
+        println!("{plan}, three runs: {:.2} % of {n} (1 % ± {:.2})", 100.0 * rate, 200.0 * se);
+        assert!(rate < 0.01 + 3.0 * se, "{plan}: {rate}");
+    }
+}
+
+#[test]
+fn what_repeats_in_all_runs_stays_when_a_position_is_left_out() {
+    // A dial whose divisions err alike in every run.
+    let mut e = bench("-60:60:60", 3);
+    let errors = [0.9, -0.4, 0.2, -1.1, 0.6, 0.3, -0.7, 0.8, -0.2, -0.5];
+    for run in 0..3 {
+        for dwell in 1..=60 {
+            e = shifted(e, run, dwell, errors[(dwell * 7) % 10]);
+        }
+    }
+    let name = e.runs[1].name.clone();
+    let repeats = |left: &[LeftOut]| {
+        let a = assess_without(&e, &EstimateOptions::default(), left).unwrap();
+        assert!(a.findings.iter().any(|f| f.kind == FindingKind::ErrorsRepeat), "{left:?}");
+        a.pooled[0].standard_uncertainty
+    };
+    let (whole, rest) = (repeats(&[]), repeats(&[out(&name, 20)]));
+    assert!((rest / whole - 1.0).abs() < 0.2, "{whole} {rest}");
 }
 
 fn out(run: &str, position: usize) -> LeftOut {

@@ -30,6 +30,11 @@ pub struct Dwell {
     pub scatter: f64,
 }
 
+/// A column: its name and its value in a dwell.
+pub type Column = (&'static str, fn(Dwell) -> f64);
+/// Noise of a sample in LSB, and what the converter makes of it.
+pub type Raw = (f64, fn(f64) -> f64);
+
 /// A folder of averaged runs.
 pub struct Bench {
     pub angles: Vec<f64>,
@@ -47,9 +52,9 @@ pub struct Bench {
     pub bench: &'static str,
     pub tail: String,
     /// More columns: name and value.
-    pub column: Option<(&'static str, fn(Dwell) -> f64)>,
+    pub column: Option<Column>,
     /// Single codes instead of averages: noise in LSB, and what the converter makes of a sample.
-    pub raw: Option<(f64, fn(f64) -> f64)>,
+    pub raw: Option<Raw>,
 }
 
 impl Bench {
