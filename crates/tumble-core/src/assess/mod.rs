@@ -153,7 +153,7 @@ pub fn assess_without(
     options: &EstimateOptions,
     left_out: &[LeftOut],
 ) -> Result<Assessment, AssessError> {
-    all_there(experiment, left_out)?;
+    outliers::all_there(experiment, left_out)?;
     if options.weights == Weights::Stated && experiment.bench.angle_uncertainty.is_none() {
         return Err(AssessError::NothingStated);
     }
@@ -204,7 +204,8 @@ pub fn assess_without(
             influence: &influence,
         }));
     }
-    let outliers = outlier_findings(&materials, &runs, &pooled, (&setting, options), &mut findings);
+    let judged = (&setting, options);
+    let outliers = outliers::judge(&materials, &runs, &pooled, judged, &mut findings);
     let error_level = error_level(&runs, &setting);
     findings.extend(error_level.iter().filter_map(ErrorLevel::finding));
     findings.push(budget_finding());
@@ -261,48 +262,6 @@ fn adjusted_runs(experiment: &Experiment) -> Vec<(Run, Vec<&Position>)> {
             (run.clone(), positions)
         })
         .collect()
-}
-
-/// Everything that is to be left out must be there.
-fn all_there(experiment: &Experiment, left_out: &[LeftOut]) -> Result<(), AssessError> {
-    for asked in left_out {
-        let run = experiment.runs.iter().find(|r| r.name == asked.run).ok_or_else(|| {
-            let known = experiment.runs.iter().map(|r| r.name.clone()).collect();
-            AssessError::NoSuchRun { run: asked.run.clone(), known }
-        })?;
-        if !(1..=run.positions.len()).contains(&asked.position) {
-            let positions = run.positions.len();
-            return Err(AssessError::NoSuchPosition { asked: asked.clone(), positions });
-        }
-    }
-    Ok(())
-}
-
-/// Positions that do not belong or were left out, with what they do to the results.
-fn outlier_findings(
-    materials: &[Material<'_>],
-    runs: &[RunAssessment],
-    pooled: &[PooledParameter],
-    (setting, options): (&Setting<'_>, &EstimateOptions),
-    findings: &mut Vec<Finding>,
-) -> Outliers {
-    let g = &setting.bench.gravity;
-    let again = outliers::Again {
-        fit: &|positions| estimate(positions, setting, options).ok(),
-        pool: &|runs| pool(runs, g, options.level),
-        level: options.level,
-        least_sd_lsb: judge::limits::LEAST_SCATTER_RAD * g.value_m_s2
-            / setting.nominal_scale_m_s2_per_lsb,
-    };
-    // Data that contradict the model as a whole have no single position to blame.
-    let contradicted = findings.iter().any(|f| {
-        f.kind.severity() == crate::Severity::Reject && f.kind != FindingKind::MistypedAngle
-    });
-    let seek = if contradicted { outliers::Seek::Named } else { outliers::Seek::All };
-    let found = outliers::outliers(materials, runs, pooled, &again, seek);
-    let more = outliers::findings(&found, materials, runs, findings);
-    findings.extend(more);
-    found
 }
 
 fn assess_run<'a>(

@@ -2,10 +2,14 @@
 //!
 //! Nothing is left out unless the user says so. Effects are those of real re-fits.
 
-use super::{PooledParameter, RunAssessment};
-use crate::estimate::{Estimate, Parameter};
-use crate::judge::{Belonging, FALSE_ALARM, belonging, limits, of_farthest};
-use crate::{Finding, FindingKind, Position, Run, Seat};
+mod study;
+mod words;
+
+use super::{AssessError, PooledParameter, RunAssessment, pool};
+use crate::estimate::{Estimate, EstimateOptions, Parameter, Setting, estimate};
+use crate::judge::{Belonging, limits};
+use crate::{Experiment, Finding, FindingKind, Position, Run};
+use study::Study;
 
 /// Positions of a run that may be left out: one in so many, and always one.
 pub(crate) const LEAVABLE_SHARE: usize = 10;
@@ -132,9 +136,9 @@ pub(super) fn numbered<'a>(
 /// Finds what does not belong, and what it and everything left out do to the results.
 ///
 /// **Model** a run's farthest position in externally studentized residuals is named where its p-value times the
-/// positions of the experiment is below [`FALSE_ALARM`]; then the next, without it. Positions that do not fit by the
+/// positions of the experiment is below [`FALSE_ALARM`](crate::judge::FALSE_ALARM); then the next, without it. Positions that do not fit by the
 /// hygiene of the data start named. `names` says whether any are sought: data that contradict the model have none.
-pub(super) fn outliers(
+fn outliers(
     materials: &[Material<'_>],
     runs: &[RunAssessment],
     pooled: &[PooledParameter],
@@ -163,186 +167,6 @@ pub(super) enum Seek {
     All,
     /// Only what is named already is followed up.
     Named,
-}
-
-/// One run, looked at for what does not belong.
-struct Study<'s> {
-    material: &'s Material<'s>,
-    index: usize,
-    runs: &'s [RunAssessment],
-    pooled: &'s [PooledParameter],
-    estimate: &'s Estimate,
-    again: &'s Again<'s>,
-    tests: usize,
-    /// Whether the pooled values are worked out, too.
-    pools: bool,
-}
-
-impl Study<'_> {
-    fn positions(&self, seek: Seek) -> Vec<Outlier> {
-        let mut named = self.named_before();
-        if seek == Seek::All {
-            self.seek(&mut named);
-        }
-        let mut out: Vec<Outlier> =
-            named.iter().map(|(i, by)| self.named(*i, *by, &named)).collect();
-        out.extend(self.material.left_out.iter().take(MOST).map(|(n, p)| self.left_out(*n, p)));
-        out.sort_by_key(|o| o.position);
-        out
-    }
-
-    /// Indices among the used positions that hygiene found not to fit.
-    fn named_before(&self) -> Vec<(usize, FindingKind)> {
-        let not_fitting = |n: Option<usize>| {
-            let kinds = self.material.noticed.iter().filter(|(m, _)| Some(*m) == n);
-            kinds
-                .map(|(_, k)| *k)
-                .find(|k| matches!(k, FindingKind::DwellDoesNotFit | FindingKind::MistypedAngle))
-        };
-        let used = self.material.used.iter().enumerate();
-        used.filter_map(|(i, (n, _))| not_fitting(*n).map(|k| (i, k))).take(MOST).collect()
-    }
-
-    /// Adds what does not belong, the farthest first.
-    fn seek(&self, named: &mut Vec<(usize, FindingKind)>) {
-        let used = &self.material.used;
-        let most = (used.len() / limits::WRONG_SHARE).min(MOST);
-        if used.len() < limits::FEWEST_DWELLS {
-            return;
-        }
-        while named.len() < most {
-            let kept: Vec<usize> =
-                (0..used.len()).filter(|i| !named.iter().any(|(j, _)| j == i)).collect();
-            let refitted = (!named.is_empty()).then(|| self.fit_of(&kept));
-            let estimate = match &refitted {
-                None => self.estimate,
-                Some(Some(e)) => e,
-                Some(None) => return,
-            };
-            let held = belonging(&estimate.weighted_rows, self.again.least_sd_lsb);
-            let farthest = kept
-                .iter()
-                .zip(held)
-                .filter(|(i, _)| used[**i].0.is_some() && used[**i].1.seat == Seat::Table)
-                .filter_map(|(i, b)| b.map(|b| (*i, b.p_value)))
-                .min_by(|a, b| a.1.total_cmp(&b.1));
-            match farthest {
-                Some((i, p)) if of_farthest(p, self.tests) < FALSE_ALARM => {
-                    named.push((i, self.noticed_at(i).unwrap_or(FindingKind::DoesNotBelong)));
-                }
-                _ => return,
-            }
-        }
-    }
-
-    fn noticed_at(&self, i: usize) -> Option<FindingKind> {
-        let number = self.material.used[i].0;
-        self.material.noticed.iter().find(|(n, _)| Some(*n) == number).map(|(_, k)| *k)
-    }
-
-    fn fit_of(&self, indices: &[usize]) -> Option<Estimate> {
-        let positions: Vec<&Position> = indices.iter().map(|i| self.material.used[*i].1).collect();
-        (self.again.fit)(&positions)
-    }
-
-    fn named(&self, i: usize, by: FindingKind, named: &[(usize, FindingKind)]) -> Outlier {
-        let all = 0..self.material.used.len();
-        // Held against those that belong, without the other suspects.
-        let company: Vec<usize> =
-            all.clone().filter(|k| *k == i || !named.iter().any(|(j, _)| j == k)).collect();
-        let at = company.iter().position(|k| *k == i).unwrap_or(0);
-        let held = match company.len() == self.material.used.len() {
-            true => self.held(&self.estimate.weighted_rows, at),
-            false => self.fit_of(&company).and_then(|e| self.held(&e.weighted_rows, at)),
-        };
-        let others: Vec<usize> = all.filter(|k| *k != i).collect();
-        let without = self.fit_of(&others);
-        let (number, position) = self.material.used[i];
-        Outlier {
-            named_by: Some(by),
-            effect: without.as_ref().and_then(|e| self.change(self.estimate, e)),
-            pooled_effect: without.filter(|_| self.pools).and_then(|e| {
-                self.pooled_change(self.pooled, &(self.again.pool)(&self.with_estimate(e)))
-            }),
-            ..self.outlier(number.unwrap_or(0), position, held)
-        }
-    }
-
-    fn left_out(&self, number: usize, position: &Position) -> Outlier {
-        let mut company: Vec<&Position> = self.material.used.iter().map(|(_, p)| *p).collect();
-        company.push(position);
-        let with = (self.again.fit)(&company);
-        let held = with.as_ref().and_then(|e| self.held(&e.weighted_rows, company.len() - 1));
-        Outlier {
-            left_out: true,
-            effect: with.as_ref().and_then(|e| self.change(e, self.estimate)),
-            pooled_effect: with.filter(|_| self.pools).and_then(|e| {
-                self.pooled_change(&(self.again.pool)(&self.with_estimate(e)), self.pooled)
-            }),
-            ..self.outlier(number, position, held)
-        }
-    }
-
-    fn outlier(&self, number: usize, position: &Position, held: Option<Belonging>) -> Outlier {
-        Outlier {
-            run: self.runs[self.index].name.clone(),
-            position: number,
-            place: position.place.clone(),
-            angle_deg: position.angle.deg(),
-            p_value: held.map(|b| of_farthest(b.p_value, self.tests)),
-            belonging: held,
-            named_by: None,
-            left_out: false,
-            effect: None,
-            pooled_effect: None,
-        }
-    }
-
-    fn held(&self, rows: &[crate::estimate::WeightedRow], at: usize) -> Option<Belonging> {
-        belonging(rows, self.again.least_sd_lsb).get(at).copied().flatten()
-    }
-
-    /// The runs with another estimate of this one.
-    fn with_estimate(&self, estimate: Estimate) -> Vec<RunAssessment> {
-        let mut runs = self.runs.to_vec();
-        runs[self.index].estimate = Some(estimate);
-        runs
-    }
-
-    fn change(&self, with: &Estimate, without: &Estimate) -> Option<[Change; 3]> {
-        let expanded =
-            |e: &Estimate, p| e.interval(p, self.again.level).map(|[a, b]| 0.5 * (b - a));
-        let [a, b] = [with.full()?, without.full()?];
-        Some(Parameter::ALL.map(|p| {
-            let i = p.index();
-            changed((a[i], expanded(with, p)), (b[i], expanded(without, p)))
-        }))
-    }
-
-    fn pooled_change(
-        &self,
-        with: &[PooledParameter],
-        without: &[PooledParameter],
-    ) -> Option<[Change; 3]> {
-        let mounting = &self.runs[self.index].mounting;
-        let mut out = [None; 3];
-        for parameter in Parameter::ALL {
-            let of = |all: &[PooledParameter]| {
-                all.iter()
-                    .find(|p| {
-                        p.parameter == parameter
-                            && p.mounting.as_ref().is_none_or(|m| m == mounting)
-                    })
-                    .filter(|p| p.runs > 1)
-                    .map(|p| (p.value, Some(p.expanded_uncertainty)))
-            };
-            out[parameter.index()] = of(with).zip(of(without)).map(|(a, b)| changed(a, b));
-        }
-        match out {
-            [Some(a), Some(b), Some(c)] => Some([a, b, c]),
-            _ => None,
-        }
-    }
 }
 
 fn changed(with: (f64, Option<f64>), without: (f64, Option<f64>)) -> Change {
@@ -392,139 +216,45 @@ fn comparison(
         .collect()
 }
 
-/// A change for people, with its sign.
-fn shown(parameter: Parameter, c: &Change) -> String {
-    let sign = if c.change > 0.0 { "+" } else { "" };
-    let u = c.over_u.map_or_else(String::new, |u| format!(" ({u:+.1} U)"));
-    format!("{} {sign}{}{u}", parameter.words(), parameter.shown(c.change))
+/// Everything that is to be left out must be there.
+pub(super) fn all_there(experiment: &Experiment, left_out: &[LeftOut]) -> Result<(), AssessError> {
+    for asked in left_out {
+        let run = experiment.runs.iter().find(|r| r.name == asked.run).ok_or_else(|| {
+            let known = experiment.runs.iter().map(|r| r.name.clone()).collect();
+            AssessError::NoSuchRun { run: asked.run.clone(), known }
+        })?;
+        if !(1..=run.positions.len()).contains(&asked.position) {
+            let positions = run.positions.len();
+            return Err(AssessError::NoSuchPosition { asked: asked.clone(), positions });
+        }
+    }
+    Ok(())
 }
 
-impl Outlier {
-    /// Largest effect on the run's values, in expanded uncertainties.
-    #[must_use]
-    pub fn largest_effect(&self) -> Option<f64> {
-        self.effect?.iter().filter_map(|c| c.over_u).map(f64::abs).reduce(f64::max)
-    }
-
-    /// The effect in words.
-    fn effect_in_words(&self) -> Option<String> {
-        let e = self.effect.as_ref()?;
-        let all: Vec<String> = Parameter::ALL.iter().zip(e).map(|(p, c)| shown(*p, c)).collect();
-        let moves = match self.largest_effect() {
-            Some(u) if u > 1.0 => "; that is more than the run's own uncertainty",
-            _ => "",
-        };
-        Some(format!("without it {}{moves}", all.join(", ")))
-    }
-
-    /// How far off and how unlikely, in words.
-    fn distance_in_words(&self) -> String {
-        let Some(b) = &self.belonging else { return "nothing to hold it against".into() };
-        format!(
-            "{:+.2} LSB off what the others expect, t = {:.1} with {:.0} degrees of freedom, p = {:.1e}",
-            b.residual_lsb,
-            b.studentized,
-            b.degrees_of_freedom,
-            self.p_value.unwrap_or(1.0)
-        )
-    }
-}
-
-/// What is worth saying; the findings that name a position already get its effect added.
-pub(super) fn findings(
-    outliers: &Outliers,
+/// Positions that do not belong or were left out, with what they do to the results.
+pub(super) fn judge(
     materials: &[Material<'_>],
     runs: &[RunAssessment],
-    existing: &mut [Finding],
-) -> Vec<Finding> {
-    let mut out = Vec::new();
-    for o in &outliers.positions {
-        let effect = o.effect_in_words();
-        match o.named_by {
-            Some(FindingKind::DoesNotBelong) => out.push(does_not_belong(o, effect)),
-            Some(by) => {
-                let said = existing.iter_mut().find(|f| f.kind == by && f.place == o.place);
-                if let (Some(f), Some(effect)) = (said, effect) {
-                    f.observed = format!("{}; {effect}", f.observed);
-                }
-            }
-            None => {}
-        }
-    }
-    for (m, run) in materials.iter().zip(runs).filter(|(m, _)| !m.left_out.is_empty()) {
-        let total = m.used.len() + m.left_out.len();
-        out.push(left_out(m, run, total, outliers));
-        let allowed = leavable(total);
-        if m.left_out.len() > allowed {
-            out.push(Finding {
-                kind: FindingKind::TooManyLeftOut,
-                place: run.name.clone(),
-                observed: format!("{} of {total} positions left out", m.left_out.len()),
-                limit: format!("one in {LEAVABLE_SHARE}: {allowed}"),
-                remedy: "measure the run again; what remains after choosing proves nothing".into(),
-            });
-        }
-    }
-    out
-}
-
-/// Positions of a run that may be left out.
-fn leavable(positions: usize) -> usize {
-    (positions / LEAVABLE_SHARE).max(1)
-}
-
-fn does_not_belong(o: &Outlier, effect: Option<String>) -> Finding {
-    let effect = effect.map_or_else(String::new, |e| format!("; {e}"));
-    Finding {
-        kind: FindingKind::DoesNotBelong,
-        place: o.place.clone(),
-        observed: format!(
-            "position {} of {}: {}{effect}",
-            o.position,
-            o.run,
-            o.distance_in_words()
-        ),
-        limit: format!("p ≥ {FALSE_ALARM}, over all positions of the experiment"),
-        remedy: format!(
-            "it is in the result; measure it again, or if the notes say why it is wrong, leave it out with --leave-out {}:{}",
-            o.run, o.position
-        ),
-    }
-}
-
-fn left_out(m: &Material<'_>, run: &RunAssessment, total: usize, all: &Outliers) -> Finding {
-    const SHOWN: usize = 8;
-    let listed: Vec<String> = m.left_out.iter().take(SHOWN).map(|(n, _)| n.to_string()).collect();
-    let more = if m.left_out.len() > SHOWN { ", …" } else { "" };
-    let fits: Vec<String> = all
-        .positions
-        .iter()
-        .filter(|o| o.left_out && o.run == run.name && o.p_value.is_none_or(|p| p >= FALSE_ALARM))
-        .take(SHOWN)
-        .map(|o| o.position.to_string())
-        .collect();
-    let fits = match fits.as_slice() {
-        [] => String::new(),
-        some => format!("; nothing in the data speaks against {}", some.join(", ")),
+    pooled: &[PooledParameter],
+    (setting, options): (&Setting<'_>, &EstimateOptions),
+    findings: &mut Vec<Finding>,
+) -> Outliers {
+    let g = &setting.bench.gravity;
+    let again = Again {
+        fit: &|positions| estimate(positions, setting, options).ok(),
+        pool: &|runs| pool(runs, g, options.level),
+        level: options.level,
+        least_sd_lsb: limits::LEAST_SCATTER_RAD * g.value_m_s2 / setting.nominal_scale_m_s2_per_lsb,
     };
-    let both: Vec<String> = all
-        .comparison
-        .iter()
-        .filter(|c| c.mounting.as_ref().is_none_or(|x| *x == run.mounting))
-        .map(|c| {
-            let shown =
-                |(v, u): (f64, f64)| format!("{} ± {}", c.parameter.shown(v), c.parameter.shown(u));
-            format!("{} {} (with all {})", c.parameter.words(), shown(c.without), shown(c.with))
-        })
-        .collect();
-    let both = if both.is_empty() { String::new() } else { format!("; {}", both.join(", ")) };
-    Finding {
-        kind: FindingKind::LeftOutByUser,
-        place: run.name.clone(),
-        observed: format!("position {}{more} of {total} left out{fits}{both}", listed.join(", ")),
-        limit: "every position that was measured".into(),
-        remedy: "say why in `note`; where a position was chosen for looking wrong, the intervals are too short: measure it again".into(),
-    }
+    // Data that contradict the model as a whole have no single position to blame.
+    let contradicted = findings.iter().any(|f| {
+        f.kind.severity() == crate::Severity::Reject && f.kind != FindingKind::MistypedAngle
+    });
+    let seek = if contradicted { Seek::Named } else { Seek::All };
+    let found = outliers(materials, runs, pooled, &again, seek);
+    let more = words::findings(&found, materials, runs, findings);
+    findings.extend(more);
+    found
 }
 
 #[cfg(test)]
@@ -532,16 +262,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_in_ten_may_go_and_always_one() {
-        assert_eq!([4, 12, 19, 20, 60].map(leavable), [1, 1, 1, 2, 6]);
-    }
-
-    #[test]
     fn changes_are_without_minus_with() {
         let c = changed((1.0, Some(0.5)), (1.25, Some(0.4)));
         assert_eq!((c.change, c.over_u), (0.25, Some(0.5)));
         assert!((c.uncertainty_ratio.unwrap() - 0.8).abs() < 1e-15);
         assert_eq!(changed((1.0, None), (2.0, Some(0.0))).over_u, None);
-        assert_eq!(shown(Parameter::Misalignment, &c), "misalignment +250 mrad (+0.5 U)");
     }
 }
