@@ -87,7 +87,7 @@ fn honest() -> Vec<Scenario> {
 
 #[test]
 fn honest_positions_are_named_as_seldom_as_stated() {
-    let n = runs(450, 10_000);
+    let n = runs(420, 10_000);
     let (mut all, mut alarms) = (0, 0);
     let mut too_many = Vec::new();
     for (k, s) in honest().iter().enumerate() {
@@ -144,7 +144,7 @@ fn found(truth: &Truth, at: usize, sigmas: f64, n: usize) -> f64 {
 
 #[test]
 fn power_at_the_middle_and_at_the_end() {
-    let n = runs(150, 5_000);
+    let n = runs(100, 5_000);
     // Positions, index, share found at 2, 3, 4, 5, 6, 8 and 10 standard deviations, at least.
     let sizes = [2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0];
     for (name, count, at, least) in [

@@ -26,7 +26,7 @@ pub(crate) fn table(out: &mut String, p: &Passport) {
         return;
     }
     out.push_str(
-        "\nPositions that do not belong (change without it: bias/misalignment/scale, in U)\n",
+        "\nPositions that do not belong, or were left out (change in U: bias/misal./scale)\n",
     );
     let unit = shortened(&crate::units::Units::of(p).reading, 6);
     for o in p.outliers.iter().take(MOST) {

@@ -42,7 +42,7 @@ fn shifted(mut e: Experiment, run: usize, dwell: usize, lsb: f64) -> Experiment 
 /// Through everything, three runs an experiment: hygiene before it and the rule after it.
 #[test]
 fn honest_experiments_name_a_position_as_seldom_as_stated() {
-    let n = crate::study::runs(250, 5_000);
+    let n = crate::study::runs(150, 5_000);
     for (plan, seed) in [("-60:60:60", 0), ("-60:60:12", 100_000)] {
         let named: usize = crate::study::each(n, |i| {
             let e = seeded(plan, 3, seed + i);
@@ -117,7 +117,7 @@ fn left_out_positions_are_said_with_the_result_both_ways() {
     let left = [out(&name, 10), out(&name, 40)];
     let a = assess_without(&e, &EstimateOptions::default(), &left).unwrap();
     let f = a.findings.iter().find(|f| f.kind == FindingKind::LeftOutByUser).unwrap();
-    assert!(f.observed.starts_with("position 10, 40 of 60 left out"), "{f:?}");
+    assert!(f.observed.starts_with("positions 10, 40 of 60 left out"), "{f:?}");
     assert!(
         f.observed.contains("nothing in the data speaks against 40")
             && f.observed.contains("with all")

@@ -53,7 +53,7 @@ pub(super) fn section_of(page: &Page<'_>) -> Markup {
             ))
         }
     };
-    section("Positions that do not belong", &body)
+    section("Positions that do not belong, or were left out", &body)
 }
 
 fn row(o: &Outlier) -> Vec<String> {

@@ -108,6 +108,7 @@ fn does_not_belong(o: &Outlier, effect: Option<String>) -> Finding {
 
 fn left_out(m: &Material<'_>, run: &RunAssessment, total: usize, all: &Outliers) -> Finding {
     const SHOWN: usize = 8;
+    let position = if m.left_out.len() == 1 { "position" } else { "positions" };
     let listed: Vec<String> = m.left_out.iter().take(SHOWN).map(|(n, _)| n.to_string()).collect();
     let more = if m.left_out.len() > SHOWN { ", …" } else { "" };
     let fits: Vec<String> = all
@@ -135,7 +136,7 @@ fn left_out(m: &Material<'_>, run: &RunAssessment, total: usize, all: &Outliers)
     Finding {
         kind: FindingKind::LeftOutByUser,
         place: run.name.clone(),
-        observed: format!("position {}{more} of {total} left out{fits}{both}", listed.join(", ")),
+        observed: format!("{position} {}{more} of {total} left out{fits}{both}", listed.join(", ")),
         limit: "every position that was measured".into(),
         remedy: "say why in `note`; where a position was chosen for looking wrong, the intervals are too short: measure it again".into(),
     }
