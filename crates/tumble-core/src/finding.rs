@@ -132,6 +132,12 @@ finding_kinds! {
     RepeatedSamples = "T0129", Warning, "samples with the same time";
     /// Real numbers where the nominal scale is one per LSB.
     UnitIsNotTheScales = "T0130", Reject, "the readings are not in the unit of the nominal scale";
+    /// A position that the others leave out of themselves.
+    DoesNotBelong = "T0131", Warning, "a position does not belong to its run";
+    /// The user left positions out.
+    LeftOutByUser = "T0132", Warning, "positions were left out on request";
+    /// The user left out more than is credible.
+    TooManyLeftOut = "T0133", Missing, "too many positions were left out";
     /// Too few distinct angles for the parameters.
     RankDeficient = "T0201", Missing, "the positions do not determine all parameters";
     /// As many distinct angles as parameters, no repeats.
@@ -290,7 +296,7 @@ mod tests {
     #[test]
     fn near_ids_by_number_or_word() {
         let ids = |text| FindingKind::nearest(text).iter().map(|k| k.id()).collect::<Vec<_>>();
-        assert_eq!(ids("T0131")[0], "T0130");
+        assert_eq!(ids("T0131")[0], "T0131");
         assert_eq!(ids("t9999").len(), 3);
         assert_eq!(ids("gravity"), ["T0306", "T0307"]);
         assert!(ids("").is_empty() && ids("zz").is_empty());

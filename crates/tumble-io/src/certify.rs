@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use tumble_core::assess::{AssessError, assess};
+use tumble_core::assess::{AssessError, LeftOut, assess_without};
 use tumble_core::estimate::EstimateOptions;
 
 use crate::catalogue::UserCatalogue;
@@ -22,6 +22,8 @@ pub struct CertifyOptions {
     pub issued: Option<String>,
     /// Types of sensors over the folder's and the built-in ones.
     pub catalogue: Option<UserCatalogue>,
+    /// Positions that are left out of the adjustment, beside those that the folder leaves out.
+    pub left_out: Vec<LeftOut>,
 }
 
 /// An experiment that could not be certified: nothing was judged.
@@ -62,10 +64,13 @@ pub fn certify_watched(
     options: &CertifyOptions,
     watch: &dyn Watch,
 ) -> Result<Passport, CertifyError> {
-    let read = read_experiment_with(folder, options.catalogue.as_ref(), watch)
+    let mut read = read_experiment_with(folder, options.catalogue.as_ref(), watch)
         .map_err(CertifyError::Read)?;
-    let mut assessment =
-        assess(&read.experiment, &options.estimate).map_err(CertifyError::Assess)?;
+    read.left_out.extend(options.left_out.iter().cloned());
+    read.left_out.sort();
+    read.left_out.dedup();
+    let mut assessment = assess_without(&read.experiment, &options.estimate, &read.left_out)
+        .map_err(CertifyError::Assess)?;
     assessment.findings.extend(read.findings.iter().cloned());
     let passport = passport::build(
         &read,

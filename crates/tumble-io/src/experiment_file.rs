@@ -149,6 +149,9 @@ pub(crate) struct RunTable {
     pub(crate) mounting: Option<String>,
     #[serde(default)]
     pub(crate) orientation: Orientation,
+    /// Numbers of positions that are left out of the adjustment.
+    #[serde(default)]
+    pub(crate) leave_out: Vec<usize>,
     #[serde(default)]
     pub(crate) columns: Mapping,
     #[serde(default)]

@@ -1,5 +1,10 @@
 //! Hopeless experiments: none is accepted, each says why and what to do.
-#![allow(clippy::unwrap_used)] // A test that cannot unwrap has failed.
+#![allow(clippy::unwrap_used, clippy::print_stdout)] // A test that cannot unwrap has failed.
+
+#[path = "degenerate/bench.rs"]
+mod bench;
+#[path = "degenerate/misleading.rs"]
+mod misleading;
 
 use std::fmt::Write as _;
 use std::path::Path;

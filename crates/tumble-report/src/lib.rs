@@ -18,6 +18,7 @@ mod figure;
 mod html;
 mod merge;
 mod numbers;
+mod outliers;
 mod runs;
 mod sanitize;
 mod standing;

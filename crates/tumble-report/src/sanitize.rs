@@ -116,6 +116,8 @@ fn unreadable() -> Passport {
         error_level_lsb: None,
         structure: None,
         influence: p::Influence::default(),
+        outliers: Vec::new(),
+        left_out_comparison: Vec::new(),
         budget: Vec::new(),
         findings: Vec::new(),
         inputs: Vec::new(),
@@ -125,6 +127,7 @@ fn unreadable() -> Passport {
             level: 0.0,
             monte_carlo_digits: 0,
             targets: p::Targets { bias_m_s2: 0.0, misalignment_rad: 0.0, scale_error: 0.0 },
+            left_out: Vec::new(),
         },
         software: p::Software { name: unknown(), version: String::new(), target: String::new() },
     }

@@ -38,6 +38,9 @@ pub fn summary(passport: &Passport) -> String {
     subject(&mut out, &p);
     numbers(&mut out, &p);
     conformity(&mut out, &p);
+    if standing.has_estimates() {
+        crate::outliers::table(&mut out, &p);
+    }
     findings(&mut out, &p);
     // Ids of another version are not explained by this one.
     if let Some(kind) = p.findings.first().and_then(|f| FindingKind::from_id(&f.id)) {

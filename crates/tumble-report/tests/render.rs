@@ -225,3 +225,53 @@ fn the_summary_names_the_command_that_explains() {
     p.findings.clear();
     assert!(!summary(&p).contains("tumble explain"));
 }
+
+#[test]
+fn positions_that_do_not_belong_stand_in_a_table() {
+    use tumble_io::passport::{LeftOutComparison, Outlier, PerParameter, ValueAndUncertainty};
+    let mut p = common::accepted();
+    assert!(!html(&p).contains("Positions that do not belong"));
+    let three =
+        |b, m, s| Some(PerParameter { bias: Some(b), misalignment: Some(m), scale_error: Some(s) });
+    let outlier = |position: usize, left_out: bool| Outlier {
+        run: "run-2".into(),
+        position,
+        angle_deg: -24.0,
+        residual_lsb: Some(-3.21),
+        studentized: Some(-6.1),
+        p_value: Some(4e-5),
+        named_by: (!left_out).then(|| "T0131".into()),
+        left_out,
+        effect: three(0.001, -2e-5, 1e-4),
+        effect_over_u: three(1.25, -0.5, 0.0),
+        uncertainty_ratio: three(0.8, 0.8, 0.8),
+        pooled_effect: three(0.0002, -4e-6, 2e-5),
+        pooled_effect_over_u: three(0.25, -0.15, 0.0),
+    };
+    p.outliers = vec![outlier(7, false), outlier(12, true)];
+    let of = |value: f64| ValueAndUncertainty { value, expanded_uncertainty: 0.0012 };
+    p.left_out_comparison = vec![LeftOutComparison {
+        parameter: "bias".into(),
+        mounting: None,
+        with: of(-0.0071),
+        without: of(-0.0063),
+    }];
+    let text = summary(&p);
+    let line = text.lines().find(|l| l.contains("run-2:7")).unwrap();
+    assert!(line.contains("-3.21 LSB") && line.contains("+1.25 / -0.50 / 0.00"), "{line}");
+    assert!(line.ends_with("kept") && text.contains("left out"), "{text}");
+    assert!(text.lines().all(|l| l.chars().count() <= 80) && !text.contains('−'), "{text}");
+    let page = html(&p);
+    for words in [
+        "Positions that do not belong",
+        "+1.25 / −0.50 / 0.00",
+        "+0.25 / −0.15 / 0.00",
+        "left out on request",
+        "−0.0071 ± 0.0012",
+        "−0.0063 ± 0.0012",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+    p.verdict = "rejected".into();
+    assert!(!summary(&p).contains("run-2:7") && !html(&p).contains("−0.0063"));
+}

@@ -170,6 +170,7 @@ Examples:
   tumble certify examples/adxl203-3
   tumble certify my-sensor --out my-sensor/passport
   tumble certify unit-1 unit-2 --out passports   # a subfolder a serial
+  tumble certify my-sensor --leave-out run-2:7,12
   tumble certify my-sensor --json | jq .result.bias")]
 pub(crate) struct CertifyArgs {
     /// Experiment folders (each with an experiment.toml).
@@ -190,6 +191,9 @@ pub(crate) struct CertifyArgs {
     /// Digits of U that Monte Carlo is to settle (JCGM 101): 1, 2, or 0 for no draws.
     #[arg(long, value_name = "DIGITS", default_value_t = 2, value_parser = clap::value_parser!(u32).range(0..=2))]
     pub(crate) monte_carlo: u32,
+    /// Leave positions out of the adjustment (repeatable); the passport says so.
+    #[arg(long, value_name = "RUN:POSITION[,…]", value_parser = leave_out)]
+    pub(crate) leave_out: Vec<LeaveOut>,
     /// Your own types of sensors, over the folder's catalogue.toml and the built-in ones.
     #[arg(long, value_name = "FILE")]
     pub(crate) catalogue: Option<PathBuf>,
@@ -211,6 +215,24 @@ pub(crate) struct CertifyArgs {
     /// Replace another result in the output folder; the old one is kept beside it.
     #[arg(long)]
     pub(crate) replace: bool,
+}
+
+/// Positions of one run, by their numbers in measured order.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct LeaveOut {
+    pub(crate) run: String,
+    pub(crate) positions: Vec<usize>,
+}
+
+/// `run-2:7,12`; names of runs may hold colons.
+fn leave_out(text: &str) -> Result<LeaveOut, String> {
+    let expected = || "give RUN:POSITION[,POSITION...], for instance run-2:7,12".to_owned();
+    let (run, list) = text.rsplit_once(':').ok_or_else(expected)?;
+    let positions: Result<Vec<usize>, _> = list.split(',').map(|n| n.trim().parse()).collect();
+    match positions {
+        Ok(positions) if !run.is_empty() => Ok(LeaveOut { run: run.to_owned(), positions }),
+        _ => Err(expected()),
+    }
 }
 
 fn level(text: &str) -> Result<f64, String> {

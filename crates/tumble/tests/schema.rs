@@ -200,6 +200,13 @@ fn passports() -> Vec<(String, Value)> {
             }),
         ),
         (
+            "positions left out".to_owned(),
+            simulated(&truth(), false, |toml| {
+                let second = "file = \"run-2.csv\"\n";
+                replaced(&toml, second, &format!("{second}leave_out = [7, 12]\n"))
+            }),
+        ),
+        (
             "rejected".to_owned(),
             simulated(&short, false, |toml| replaced(&toml, "[bench]", "[bench]\nangle_sign = -1")),
         ),

@@ -1,6 +1,6 @@
 //! The budget: scatter and what scatter does not show, put together parameter by parameter.
 
-use super::{Interval, PooledParameter, PooledRuns, RunAssessment};
+use super::{Interval, PooledParameter, PooledRuns, RunAssessment, pool_runs};
 use crate::estimate::Parameter;
 use crate::linalg::Matrix;
 use crate::stats::normal_quantile;
@@ -168,6 +168,14 @@ pub(super) fn complete(
             .map(|i| Interval::around(p.value, (0.5 * (i.high - i.low)).hypot(by_bench)));
     }
     covariance
+}
+
+/// Runs put together with the budget in them, without a shared pair: what leaving something out changes.
+pub(super) fn pooled(runs: &[RunAssessment], level: f64) -> Vec<PooledParameter> {
+    let mut together = pool_runs(runs, None, level);
+    let common = common(&together, runs);
+    complete(&mut together, &common, level);
+    together.parameters
 }
 
 /// Where bias, the first misalignment and the scale error stand among the pooled parameters.

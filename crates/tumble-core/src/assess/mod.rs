@@ -5,6 +5,7 @@ mod conformity;
 mod drawn;
 mod error_level;
 mod influence;
+mod outliers;
 mod pair;
 mod pool;
 mod repeat;
@@ -17,6 +18,7 @@ pub use conformity::{Conformity, QuantityConformity, conformity};
 pub use drawn::Drawn;
 pub use error_level::{ErrorLevel, RunErrorLevel, error_level};
 pub use influence::{Influence, InfluenceTest, influence};
+pub use outliers::{Change, LeftOut, Outlier, Outliers, WithAndWithout};
 pub use pair::{SharedPair, shared_pair};
 pub use pool::{
     BetweenRuns, Interval, PooledParameter, PooledRuns, in_lsb, pool, pool_runs, scale_factor,
@@ -27,8 +29,11 @@ pub use verdict::{Verdict, may_carry_result, verdict};
 
 pub(crate) use conformity::LOW_TEST_UNCERTAINTY_RATIO;
 pub(crate) use influence::SIGNIFICANCE as INFLUENCE_SIGNIFICANCE;
+pub(crate) use outliers::LEAVABLE_SHARE;
 pub(crate) use repeat::LIMIT as REPEAT_LIMIT;
 pub(crate) use verdict::for_want_of_runs;
+
+use outliers::Material;
 
 use crate::estimate::{
     Estimate, EstimateOptions, Residual, Setting, Weights, determines_all, estimate,
@@ -58,6 +63,8 @@ pub struct Assessment {
     pub structure: Option<Structure>,
     /// Temperature and signal level.
     pub influence: Influence,
+    /// Positions that do not belong, and those that the user left out.
+    pub outliers: Outliers,
     /// Before and after compensation.
     pub error_level: Option<ErrorLevel>,
     /// Uncertainty that does not show in the scatter.
@@ -117,6 +124,20 @@ pub enum AssessError {
     NominalScale(NominalScaleError),
     /// [`Weights::Stated`] without a stated angle uncertainty.
     NothingStated,
+    /// Positions are to be left out of a run that is not there.
+    NoSuchRun {
+        /// As it was asked for.
+        run: String,
+        /// Names of the runs.
+        known: Vec<String>,
+    },
+    /// A position is to be left out that is not there.
+    NoSuchPosition {
+        /// As it was asked for.
+        asked: LeftOut,
+        /// Positions of that run.
+        positions: usize,
+    },
 }
 
 impl std::fmt::Display for AssessError {
@@ -126,6 +147,16 @@ impl std::fmt::Display for AssessError {
             Self::NothingStated => f.write_str(
                 "--weights stated takes the angle uncertainty as known, and none is stated: give \
                  angle_uncertainty_arcmin in [bench], or leave --weights out",
+            ),
+            Self::NoSuchRun { run, known } => write!(
+                f,
+                "no run is named `{run}`, of which positions are to be left out; the runs are {}",
+                known.join(", ")
+            ),
+            Self::NoSuchPosition { asked, positions } => write!(
+                f,
+                "{} has no position {} to leave out: its positions are 1 to {positions}, in measured order",
+                asked.run, asked.position
             ),
         }
     }
@@ -143,6 +174,18 @@ pub fn assess(
     experiment: &Experiment,
     options: &EstimateOptions,
 ) -> Result<Assessment, AssessError> {
+    assess_without(experiment, options, &[])
+}
+
+/// [`assess`], with positions left out of the adjustment as the user decided; findings and result say so.
+///
+/// **Errors** [`AssessError::NoSuchRun`], [`AssessError::NoSuchPosition`] for what is not there to be left out.
+pub fn assess_without(
+    experiment: &Experiment,
+    options: &EstimateOptions,
+    left_out: &[LeftOut],
+) -> Result<Assessment, AssessError> {
+    outliers::all_there(experiment, left_out)?;
     if options.weights == Weights::Stated && experiment.bench.angle_uncertainty.is_none() {
         return Err(AssessError::NothingStated);
     }
@@ -158,17 +201,14 @@ pub fn assess(
         nominal_scale_m_s2_per_lsb: k0.value_m_s2_per_lsb,
     };
     let inputs = Inputs::of(experiment, k0.value_m_s2_per_lsb);
-    let mut runs = Vec::new();
-    for (run, candidates) in adjusted_runs(experiment) {
-        runs.push(assess_run(
-            experiment,
-            &setting,
-            options,
-            &inputs,
-            &run,
-            candidates,
-            &mut findings,
-        ));
+    let adjusted = adjusted_runs(experiment);
+    let (mut runs, mut materials) = (Vec::new(), Vec::new());
+    for (run, candidates) in &adjusted {
+        let candidates = (candidates.clone(), left_out);
+        let (assessed, material) =
+            assess_run(experiment, (&setting, options, &inputs), run, candidates, &mut findings);
+        runs.push(assessed);
+        materials.push(material);
     }
     judge::some_runs_reversed(&mut findings, &experiment.runs);
 
@@ -206,6 +246,8 @@ pub fn assess(
             influence: &influence,
         }));
     }
+    let judged = (&setting, options);
+    let outliers = outliers::judge(&materials, &runs, &pooled, judged, &mut findings);
     let error_level = error_level(&runs, &setting);
     findings.extend(error_level.iter().filter_map(ErrorLevel::finding));
     let budget = budget::lines(&together, &common);
@@ -246,6 +288,7 @@ pub fn assess(
         shared_pair,
         structure,
         influence,
+        outliers,
         error_level,
         budget,
         drawn,
@@ -287,15 +330,13 @@ fn adjusted_runs(experiment: &Experiment) -> Vec<(Run, Vec<&Position>)> {
         .collect()
 }
 
-fn assess_run(
+fn assess_run<'a>(
     experiment: &Experiment,
-    setting: &Setting<'_>,
-    options: &EstimateOptions,
-    inputs: &Inputs,
-    run: &Run,
-    candidates: Vec<&Position>,
+    (setting, options, inputs): (&Setting<'_>, &EstimateOptions, &Inputs),
+    run: &'a Run,
+    (candidates, left_out): (Vec<&'a Position>, &[LeftOut]),
     findings: &mut Vec<Finding>,
-) -> RunAssessment {
+) -> (RunAssessment, Material<'a>) {
     let bench = &experiment.bench;
     let k0 = setting.nominal_scale_m_s2_per_lsb;
     // The paper's adjustment uses [scale] for k0 alone.
@@ -305,6 +346,9 @@ fn assess_run(
         }
         _ => candidates,
     };
+    let Material { used: numbered, left_out: omitted, .. } =
+        outliers::split(run, candidates, left_out);
+    let candidates: Vec<&Position> = numbered.iter().map(|(_, p)| *p).collect();
     // Bounds refine what the other dwells determine; alone they are no start.
     let whole: Vec<&Position> = candidates
         .iter()
@@ -319,8 +363,8 @@ fn assess_run(
     };
     let output = &experiment.output;
     let usable = judge::usable_positions(run, candidates.clone(), output, bench, k0, censored);
-    let hygiene =
-        judge::data_hygiene(&run.name, &candidates, output, bench, &usable.findings).findings;
+    let judge::Hygiene { findings: hygiene, noticed } =
+        judge::data_hygiene(&run.name, &candidates, output, bench, &usable.findings);
     let contradicted = hygiene.iter().any(|f| f.kind.severity() == crate::Severity::Reject);
     findings.extend(usable.findings);
     findings.extend(hygiene);
@@ -333,7 +377,12 @@ fn assess_run(
     let variances: Vec<f64> =
         positions.iter().filter_map(|p| p.readings.std()).map(|s| s * s).collect();
     let effects = estimate.as_ref().and_then(|e| effects(e, &positions, setting, inputs, &[]));
-    RunAssessment {
+    let material = Material {
+        used: outliers::numbered(&numbered, &positions),
+        left_out: omitted,
+        noticed: noticed.into_iter().filter_map(|(i, k)| Some((numbered[i].0?, k))).collect(),
+    };
+    let assessed = RunAssessment {
         effects,
         name: run.name.clone(),
         mounting: run.mounting.clone(),
@@ -348,7 +397,8 @@ fn assess_run(
             .collect(),
         temperatures_degc: positions.iter().map(|p| p.temperature_degc).collect(),
         reading_std_lsb: crate::stats::mean(&variances).map(f64::sqrt),
-    }
+    };
+    (assessed, material)
 }
 
 /// What a run's estimate says. Values from data that are known to be wrong (`contradicted`) are not held against what

@@ -4,6 +4,7 @@
 
 mod bench;
 mod conformity;
+mod outlier;
 mod plan;
 mod record;
 mod runs;
@@ -71,6 +72,9 @@ impl FindingKind {
             K::MissingSamples => record::missing_samples(),
             K::RepeatedSamples => record::repeated_samples(),
             K::UnitIsNotTheScales => record::unit_is_not_the_scales(),
+            K::DoesNotBelong => outlier::does_not_belong(),
+            K::LeftOutByUser => outlier::left_out_by_user(),
+            K::TooManyLeftOut => outlier::too_many_left_out(),
             K::RankDeficient => plan::rank_deficient(),
             K::NoRedundancy => plan::no_redundancy(),
             K::NoLackOfFitTest => plan::no_lack_of_fit_test(),

@@ -3,9 +3,9 @@
 use super::Explanation;
 use crate::STANDARD_GRAVITY_M_S2;
 use crate::judge::limits::{
-    BIAS_UNUSUAL_M_S2, HOPELESS_DEG, MATERIAL_SHARE, MISALIGNMENT_LIMIT_RAD,
-    MISALIGNMENT_UNUSUAL_RAD, SCALE_ERROR_LIMIT, SCALE_ERROR_UNUSUAL, STEP_LIMIT,
-    STRUCTURE_SIGNIFICANCE, STUCK_LIMIT_LSB, UNITS_RATIO,
+    BIAS_UNUSUAL_M_S2, COPIED_SHARE, FEWEST_CODES, FEWEST_COPIED, HOPELESS_DEG, MATERIAL_SHARE,
+    MISALIGNMENT_LIMIT_RAD, MISALIGNMENT_UNUSUAL_RAD, SCALE_ERROR_LIMIT, SCALE_ERROR_UNUSUAL,
+    STEP_LIMIT, STRUCTURE_SIGNIFICANCE, STUCK_LIMIT_LSB, UNITS_RATIO,
 };
 
 const PLAUSIBILITY: &str = "method, section 5 (plausibility)";
@@ -102,13 +102,14 @@ pub(super) fn stuck_converter() -> Explanation {
     Explanation::new(
         format!(
             "Two dwells in a row show the same single code (averages: the same mean and scatter to the last digit), \
-             although the angle moved by more than {STUCK_LIMIT_LSB} LSB's worth. One code in a quiet dwell is normal \
-             and not meant here."
+             although the angle moved by more than {STUCK_LIMIT_LSB} LSB's worth; one code in a quiet dwell is normal. \
+             Or a low bit is the same in {FEWEST_CODES} different codes and more, so that codes are missing."
         ),
         "The logger repeats an old sample, or the converter hangs. Readings that do not follow the table are no \
          measurement, and they pull bias and scale to wherever they stopped.",
         "Tilt the sensor by hand and watch the code: it must move. If it stays, restart converter and logger, and \
-         check that each row is a fresh sample. Then measure the run again.",
+         check that each row is a fresh sample. Then measure the run again. Words of 12 bits in the upper end of 16: \
+         divide the codes by 16 and give `nominal_scale` per true step.",
         HYGIENE,
     )
 }
@@ -196,8 +197,12 @@ pub(super) fn small_structure() -> Explanation {
 
 pub(super) fn runs_identical() -> Explanation {
     Explanation::new(
-        "Two runs have the same angles and the same readings, to the last digit. Noise never repeats, so one is a \
-         copy of the other. Runs in which every dwell shows a single code are not compared.",
+        format!(
+            "Two runs have the same angles and the same readings, to the last digit, in all dwells or in {} % of them \
+             ({FEWEST_COPIED} and more). Noise never repeats, so one is a copy of the other, perhaps with rows changed. \
+             Dwells with a single code, and averages to two decimals, do not count.",
+            100.0 * COPIED_SHARE
+        ),
         "A copy agrees with its original perfectly. It would make the spread between power-ups look small and the \
          uncertainty far too good.",
         "Look at the two `file` lines in experiment.toml: one of them names the wrong file, or a file was copied under \

@@ -20,7 +20,7 @@ const UNKNOWNS: usize = 3;
 /// Triples that the search starts from. With a sixth of the dwells wrong, more than half of them are clean.
 const STARTS: usize = 60;
 /// Least scatter that is believed, rad of table angle: data made by a formula have none.
-const LEAST_SCATTER_RAD: f64 = 2e-5;
+pub(crate) const LEAST_SCATTER_RAD: f64 = 2e-5;
 /// Least cosine in the shape of an angle's scatter.
 const LEAST_COSINE: f64 = 0.2;
 /// Scatter, rad of table angle, from which the run does not follow its angles: no dwell is singled out.

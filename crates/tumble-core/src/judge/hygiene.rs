@@ -1,4 +1,4 @@
-//! Data hygiene before any estimation: saturated dwells, a stuck converter, copies.
+//! Data hygiene before any estimation: saturated dwells, a stuck converter.
 
 use crate::{Bench, Code, Finding, FindingKind, Output, Position, Readings, Run};
 
@@ -120,31 +120,4 @@ fn stuck(run: &Run, positions: &[&Position], full_scale_lsb: f64) -> Option<Find
             "check that the logger reads fresh samples and that the converter runs; measure again"
                 .into(),
     })
-}
-
-/// Runs whose readings are equal to the last digit. A quiet converter on a good table repeats its codes honestly: only
-/// noise never repeats, so a copy must hold some.
-#[must_use]
-pub fn identical_runs(runs: &[Run]) -> Vec<Finding> {
-    let same = |a: &Run, b: &Run| {
-        a.positions.iter().any(|p| p.readings.only_code().is_none())
-            && a.positions.len() == b.positions.len()
-            && a.positions
-                .iter()
-                .zip(&b.positions)
-                .all(|(p, q)| p.angle == q.angle && p.readings == q.readings)
-    };
-    let mut findings = Vec::new();
-    for (i, a) in runs.iter().enumerate() {
-        if let Some(b) = runs[i + 1..].iter().find(|b| same(a, b)) {
-            findings.push(Finding {
-                kind: FindingKind::RunsIdentical,
-                place: format!("{} and {}", a.name, b.name),
-                observed: "every reading of both runs is the same".into(),
-                limit: "runs of their own power-ups".into(),
-                remedy: "remove the copy from experiment.toml, or measure the run again".into(),
-            });
-        }
-    }
-    findings
 }

@@ -2,7 +2,9 @@
 //!
 //! Each file looks at one thing and returns findings; the verdict follows from their severities alone.
 
+mod belonging;
 mod budgeted;
+mod copies;
 mod dwell_fit;
 mod hygiene;
 mod identifiable;
@@ -18,6 +20,7 @@ mod run_hygiene;
 mod settled;
 mod slip;
 mod structure;
+mod stuck_bit;
 mod table;
 mod together;
 mod type_limits;
@@ -26,8 +29,10 @@ mod upright;
 mod wrap;
 mod zero_rows;
 
+pub use belonging::{Belonging, FALSE_ALARM, belonging, of_farthest};
 pub use budgeted::{assumed, intervals_differ};
-pub use hygiene::{Censored, Usable, identical_runs, usable_positions};
+pub use copies::identical_runs;
+pub use hygiene::{Censored, Usable, usable_positions};
 pub use identifiable::{determined_result, determined_run, few_angles};
 pub use plausible::plausible;
 pub use reproducible::reproducible;
@@ -42,8 +47,9 @@ pub use type_limits::{Judged, type_limits};
 /// Thresholds that the explanations name, so that text and judgement cannot drift apart.
 pub(crate) mod limits {
     pub(crate) use super::budgeted::{ASSUMED_SHARE, DIFFERS_BY};
+    pub(crate) use super::copies::{COPIED_SHARE, FEWEST_COPIED};
     pub(crate) use super::dwell_fit::{
-        FEWEST as FEWEST_DWELLS, LEVEL as MISFIT_LEVEL, WRONG_SHARE,
+        FEWEST as FEWEST_DWELLS, LEAST_SCATTER_RAD, LEVEL as MISFIT_LEVEL, WRONG_SHARE,
     };
     pub(crate) use super::hygiene::STUCK_LIMIT_LSB;
     pub(crate) use super::identifiable::CONDITION_WARNING;
@@ -59,6 +65,7 @@ pub(crate) mod limits {
     pub(crate) use super::reproducible::FEW;
     pub(crate) use super::settled::STEP_LIMIT;
     pub(crate) use super::structure::{MATERIAL_SHARE, SIGNIFICANCE as STRUCTURE_SIGNIFICANCE};
+    pub(crate) use super::stuck_bit::FEWEST_CODES;
     pub(crate) use super::table::{
         HOPELESS_DEG, LITTLE_DITHER_LSB2, NOTEWORTHY_FACTOR, SIGNIFICANCE as TABLE_SIGNIFICANCE,
         SLOW_NOISE,

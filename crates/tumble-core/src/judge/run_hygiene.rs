@@ -1,6 +1,6 @@
 //! All of a run's hygiene in order: what one finding explains, the next does not name again.
 
-use super::{dwell_fit, misfit, motion, outlying, recorded, upright, wrap, zero_rows};
+use super::{dwell_fit, misfit, motion, outlying, recorded, stuck_bit, upright, wrap, zero_rows};
 use crate::{Bench, Finding, FindingKind, Output, Position, Readings};
 
 /// What the data of a run show.
@@ -16,7 +16,7 @@ pub struct Hygiene {
 ///
 /// `dwells` are all of the run, in measured order; `earlier` what was found of the same run already.
 ///
-/// **Model** in this order: words without their sign; zero rows; dwells that moved; single samples far out; dwells that
+/// **Model** in this order: words without their sign; bits that never change; zero rows; dwells that moved; single samples far out; dwells that
 /// do not fit the others (leave-out fit of `1, sinφ, cosφ` to the means); times, rows and range of the record. What one
 /// of them explains, the next does not name again.
 ///
@@ -39,6 +39,7 @@ pub fn data_hygiene(
         findings.push(wraps);
         return Hygiene { findings, noticed: Vec::new() };
     }
+    findings.extend(stuck_bit::stuck_bit(run, &read, output));
     // Indices into `read`, with what was noticed there.
     let mut noticed: Vec<(usize, FindingKind)> = Vec::new();
     let named =

@@ -10,6 +10,7 @@ use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
 use std::thread;
 
+use tumble_core::assess::LeftOut;
 use tumble_core::{
     Angle, Bench, Experiment, Finding, FindingKind, Output, PairUse, Position, Readings, Record,
     Run, Seat, Sensor, VerticalPair,
@@ -55,6 +56,8 @@ pub struct ExperimentFolder {
     pub findings: Vec<Finding>,
     /// Operators and notes by run.
     pub remarks: Vec<RunRemark>,
+    /// Positions that the folder leaves out of the adjustment.
+    pub left_out: Vec<LeftOut>,
 }
 
 /// What people wrote about a run.
@@ -199,6 +202,7 @@ fn read_parsed(
             .iter()
             .map(|r| RunRemark { operator: r.operator.clone(), note: r.note.clone() })
             .collect(),
+        left_out: left_out(&file.run, &names),
     })
 }
 
@@ -239,6 +243,14 @@ fn stem(file: &str) -> String {
         .trim_end_matches(".csv")
         .trim_end_matches(".txt")
         .to_owned()
+}
+
+/// What the runs leave out, by name.
+fn left_out(tables: &[RunTable], names: &[String]) -> Vec<LeftOut> {
+    let of = |(table, run): (&RunTable, &String)| -> Vec<LeftOut> {
+        table.leave_out.iter().map(|n| LeftOut { run: run.clone(), position: *n }).collect()
+    };
+    tables.iter().zip(names).flat_map(of).collect()
 }
 
 type ReadRun = Result<(Run, Vec<FileDigest>, Vec<Finding>), ReadError>;
@@ -385,6 +397,11 @@ impl Reader<'_> {
             for (i, dwell) in read.dwells.into_iter().enumerate() {
                 positions.push(self.position(dwell, file, i, table));
             }
+        }
+        if let Some(n) = table.leave_out.iter().find(|n| !(1..=positions.len()).contains(*n)) {
+            let expected =
+                format!("positions of {name}: 1 to {}, in measured order", positions.len());
+            return Err(value("[[run]] leave_out", n, &expected));
         }
         let mounting = table.mounting.clone().unwrap_or_else(|| "A".into());
         let run = Run {

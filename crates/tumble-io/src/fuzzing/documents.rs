@@ -2,7 +2,7 @@
 
 use std::cell::OnceCell;
 
-use tumble_core::assess::assess;
+use tumble_core::assess::assess_without;
 use tumble_core::estimate::EstimateOptions;
 
 use super::{Scratch, said};
@@ -57,7 +57,7 @@ fn judged(read: &ExperimentFolder) {
         return;
     }
     let options = EstimateOptions::default();
-    match assess(&read.experiment, &options) {
+    match assess_without(&read.experiment, &options, &read.left_out) {
         Ok(assessment) => {
             let passport = passport::build(read, &assessment, &options, None, None);
             // `certify` refuses it.

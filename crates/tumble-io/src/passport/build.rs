@@ -11,6 +11,7 @@ use tumble_core::{
     ARCMIN_RAD, Experiment, GravitySource, NominalScaleSource, Quantizer, QuantizerOffset,
 };
 
+use super::outliers;
 use super::types as wire;
 use crate::folder::ExperimentFolder;
 
@@ -87,6 +88,13 @@ pub fn build(
             temperature: assessment.influence.temperature.as_ref().map(influence),
             signal_level: assessment.influence.signal_level.as_ref().map(influence),
         },
+        outliers: assessment.outliers.positions.iter().map(outliers::outlier).collect(),
+        left_out_comparison: assessment
+            .outliers
+            .comparison
+            .iter()
+            .map(outliers::comparison)
+            .collect(),
         budget: assessment.budget.iter().map(budget_line).collect(),
         findings,
         inputs: folder
@@ -108,6 +116,7 @@ pub fn build(
                 misalignment_rad: experiment.targets.misalignment_rad,
                 scale_error: experiment.targets.scale_error,
             },
+            left_out: outliers::left_out(&folder.left_out),
         },
         software: wire::Software {
             name: "tumble".into(),

@@ -6,6 +6,7 @@
 
 mod build;
 mod conformity;
+mod outliers;
 mod types;
 
 use std::io::Read as _;

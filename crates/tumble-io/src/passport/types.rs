@@ -34,6 +34,12 @@ pub struct Passport {
     pub structure: Option<Structure>,
     #[serde(default)]
     pub influence: Influence,
+    /// Positions that do not belong, and those left out on request.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub outliers: Vec<Outlier>,
+    /// The result with and without what was left out on request.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub left_out_comparison: Vec<LeftOutComparison>,
     #[serde(default)]
     pub budget: Vec<BudgetLine>,
     #[serde(default)]
@@ -470,6 +476,64 @@ pub struct Options {
     #[serde(default)]
     pub monte_carlo_digits: u32,
     pub targets: Targets,
+    /// Positions that were left out on request.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<LeftOut>,
+}
+
+/// Positions of a run that were left out on request, by their numbers in measured order.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LeftOut {
+    pub run: String,
+    pub positions: Vec<usize>,
+}
+
+/// A position that does not belong to its run, or was left out.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Outlier {
+    pub run: String,
+    pub position: usize,
+    pub angle_deg: f64,
+    pub residual_lsb: Option<f64>,
+    pub studentized: Option<f64>,
+    pub p_value: Option<f64>,
+    /// Id of the finding that names it; `null`: only the user does.
+    pub named_by: Option<String>,
+    pub left_out: bool,
+    /// Without the position minus with it, on the run.
+    pub effect: Option<PerParameter>,
+    pub effect_over_u: Option<PerParameter>,
+    pub uncertainty_ratio: Option<PerParameter>,
+    /// The same on the pooled values.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pooled_effect: Option<PerParameter>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pooled_effect_over_u: Option<PerParameter>,
+}
+
+/// A number a parameter.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct PerParameter {
+    pub bias: Option<f64>,
+    pub misalignment: Option<f64>,
+    pub scale_error: Option<f64>,
+}
+
+/// A pooled value with all positions, and as it is reported.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LeftOutComparison {
+    pub parameter: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mounting: Option<String>,
+    pub with: ValueAndUncertainty,
+    pub without: ValueAndUncertainty,
+}
+
+/// A value with its expanded uncertainty.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ValueAndUncertainty {
+    pub value: f64,
+    pub expanded_uncertainty: f64,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -6,6 +6,7 @@ mod evidence;
 mod findings;
 mod front;
 mod note;
+mod outliers;
 mod parts;
 mod provenance;
 mod result;
@@ -68,6 +69,7 @@ pub fn html(passport: &Passport) -> String {
                     (evidence::budget(&page))
                     (evidence::runs(&page))
                     (scatter::section_of(&page))
+                    (outliers::section_of(&page))
                     (findings::findings(&page))
                     (provenance::provenance(&page))
                     (note::note(&page))

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use tumble_core::assess::LeftOut;
 use tumble_core::estimate::{EstimateOptions, Method, Weights};
 use tumble_io::passport::Passport;
 use tumble_io::{
@@ -97,6 +98,11 @@ fn options(args: &CertifyArgs) -> Result<CertifyOptions, (String, Exit)> {
             let exit = Exit::of_reading(&e);
             (e.to_string(), exit)
         })?,
+        left_out: args
+            .leave_out
+            .iter()
+            .flat_map(|l| l.positions.iter().map(|n| LeftOut { run: l.run.clone(), position: *n }))
+            .collect(),
     })
 }
 
