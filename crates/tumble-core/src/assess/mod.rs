@@ -5,6 +5,7 @@ mod influence;
 mod pool;
 mod repeat;
 mod result;
+mod terms;
 mod verdict;
 
 pub use error_level::{ErrorLevel, RunErrorLevel, error_level};
@@ -12,14 +13,19 @@ pub use influence::{Influence, InfluenceTest, influence};
 pub use pool::{Interval, PooledParameter, in_lsb, pool, scale_factor};
 pub use repeat::repeated_share;
 pub use result::{BudgetLine, CompensationResult, compensation_result};
+pub use terms::{CompensationTerms, PooledTerm, Terms, TriedTerm};
 pub use verdict::{Verdict, may_carry_result, verdict};
 
 pub(crate) use influence::SIGNIFICANCE as INFLUENCE_SIGNIFICANCE;
 pub(crate) use repeat::LIMIT as REPEAT_LIMIT;
+pub(crate) use terms::{
+    DEFAULT_K2_UG_G2 as PLAUSIBLE_K2_UG_G2, FAMILY_LEVEL as TERMS_FAMILY_LEVEL,
+};
 pub(crate) use verdict::for_want_of_runs;
 
 use crate::estimate::{
-    Estimate, EstimateOptions, Residual, Setting, Weights, determines_all, estimate,
+    Estimate, EstimateOptions, Residual, Setting, TermSet, Weights, determines_all, estimate,
+    estimate_with_terms,
 };
 use crate::judge::{self, Structure};
 use crate::nominal::{NominalScale, NominalScaleError, nominal_scale};
@@ -38,6 +44,8 @@ pub struct Assessment {
     pub pooled: Vec<PooledParameter>,
     /// Curvature left over.
     pub structure: Option<Structure>,
+    /// Further terms: what was tried, what was entered.
+    pub terms: Terms,
     /// Temperature and signal level.
     pub influence: Influence,
     /// Before and after compensation.
@@ -126,10 +134,18 @@ pub fn assess(
         ends: experiment.output.ends,
         nominal_scale_m_s2_per_lsb: k0.value_m_s2_per_lsb,
     };
-    let mut runs = Vec::new();
-    for (run, candidates) in adjusted_runs(experiment) {
-        runs.push(assess_run(experiment, &setting, options, &run, candidates, &mut findings));
-    }
+    let reference_degc = terms::reference_temperature(experiment);
+    let choosing = terms::Choosing { experiment, setting: &setting, options, reference_degc };
+    let ((runs, of_runs), terms) = choosing.choose(|set| {
+        let (mut runs, mut findings) = (Vec::new(), Vec::new());
+        let with = With { options, set, reference_degc };
+        for (run, candidates) in adjusted_runs(experiment) {
+            runs.push(assess_run(experiment, &setting, with, &run, candidates, &mut findings));
+        }
+        (runs, findings)
+    });
+    findings.extend(of_runs);
+    findings.extend(terms::term_findings(&terms, gravity.value_m_s2));
     judge::some_runs_reversed(&mut findings, &experiment.runs);
 
     let pooled = pool(&runs, gravity, options.level);
@@ -145,8 +161,10 @@ pub fn assess(
     }
     findings.extend(repeated_share(&runs).map(repeat::finding));
     let structure = structure_findings(&runs, &mut findings);
-    let influence = influence(&runs, k0.value_m_s2_per_lsb, options.level);
+    terms::explain_structure(&mut findings, &terms);
+    let mut influence = influence(&runs, k0.value_m_s2_per_lsb, options.level);
     findings.extend(influence.findings());
+    influence.take_entered(&terms, options.level);
     if !contradicted {
         findings.extend(judge::type_limits(&judge::Judged {
             experiment,
@@ -164,7 +182,8 @@ pub fn assess(
     let budget = result::budget(&pooled, gravity);
     let compensation = may_carry_result(&findings)
         .then(|| {
-            compensation_result(&pooled, &runs, experiment.output.quantizer, k0.value_m_s2_per_lsb)
+            let quantizer = experiment.output.quantizer;
+            compensation_result(&pooled, &runs, quantizer, k0.value_m_s2_per_lsb, &terms)
         })
         .flatten();
     // Worst first; within a severity in the order of discovery.
@@ -174,6 +193,7 @@ pub fn assess(
         runs,
         pooled,
         structure,
+        terms,
         influence,
         error_level,
         budget,
@@ -213,15 +233,24 @@ fn adjusted_runs(experiment: &Experiment) -> Vec<(Run, Vec<&Position>)> {
         .collect()
 }
 
+/// How runs are estimated: options, and the further terms of this pass.
+#[derive(Clone, Copy)]
+struct With<'a> {
+    options: &'a EstimateOptions,
+    set: TermSet,
+    reference_degc: Option<f64>,
+}
+
 fn assess_run(
     experiment: &Experiment,
     setting: &Setting<'_>,
-    options: &EstimateOptions,
+    with: With<'_>,
     run: &Run,
     candidates: Vec<&Position>,
     findings: &mut Vec<Finding>,
 ) -> RunAssessment {
     let bench = &experiment.bench;
+    let options = with.options;
     let k0 = setting.nominal_scale_m_s2_per_lsb;
     // The paper's adjustment uses [scale] for k0 alone.
     let candidates = match options.method {
@@ -251,7 +280,7 @@ fn assess_run(
     findings.extend(hygiene);
     let positions = usable.positions;
     findings.extend(judge::noise(&run.name, &positions, output, options.method));
-    let estimate = adjust(&run.name, &positions, setting, options, findings);
+    let estimate = adjust(&run.name, &positions, setting, with, findings);
     if let Some(e) = &estimate {
         findings.extend(estimate_findings(experiment, k0, options, &run.name, e, contradicted));
     }
@@ -304,13 +333,16 @@ fn adjust(
     run: &str,
     positions: &[&Position],
     setting: &Setting<'_>,
-    options: &EstimateOptions,
+    with: With<'_>,
     findings: &mut Vec<Finding>,
 ) -> Option<Estimate> {
+    let options = with.options;
     if positions.is_empty() {
         return None;
     }
-    let error = match estimate(positions, setting, options) {
+    let estimated =
+        estimate_with_terms(positions, setting, options, with.set, with.reference_degc);
+    let error = match estimated {
         Ok(e) => return Some(e),
         Err(error) => error,
     };

@@ -1,6 +1,6 @@
 //! The exact linear form: right for any size of error.
 
-use super::paper::{Fit, ToParameters, WeightedRow, spread};
+use super::paper::{Fit, MOST_TERMS, ToParameters, WeightedRow, spread};
 use super::types::{AgainstStated, EstimateError, Residual};
 use super::{Equation, Setting, select};
 use crate::Seat;
@@ -92,6 +92,7 @@ pub(super) fn fit(
             sd_lsb: total_variance(e, unknowns, scatter).sqrt(),
             residual: y - dot(row, unknowns),
             is_bound: false,
+            further: [0.0; MOST_TERMS],
         })
         .collect();
     let residual_std_lsb = redundant.then(|| {
@@ -112,6 +113,7 @@ pub(super) fn fit(
         weighted_rows,
         to_parameters,
         scatter: None,
+        sized_by_residuals: false,
     })
 }
 
@@ -123,13 +125,27 @@ fn against_stated(variance_ratio: f64, degrees_of_freedom: f64) -> Option<Agains
 
 /// `(α, β, γ)` of bias, misalignment and scale error.
 pub(super) fn unknowns(values: [f64; 3], setting: &Setting<'_>) -> [f64; 3] {
-    let [bias, misalignment, scale_error] = values;
-    let k = setting.nominal_scale_m_s2_per_lsb * (1.0 + scale_error);
-    let r = setting.bench.gravity.value_m_s2 / k;
-    [bias / k, r * misalignment.cos(), r * misalignment.sin()]
+    ToParameters::Exact {
+        gravity_m_s2: setting.bench.gravity.value_m_s2,
+        nominal_scale: setting.nominal_scale_m_s2_per_lsb,
+    }
+    .unknowns(values)
 }
 
 impl ToParameters {
+    /// Unknowns of the rows at given parameters: the inverse of [`Self::at`].
+    pub(super) fn unknowns(self, values: [f64; 3]) -> [f64; 3] {
+        match self {
+            Self::Identity => values,
+            Self::Exact { gravity_m_s2, nominal_scale } => {
+                let [bias, misalignment, scale_error] = values;
+                let k = nominal_scale * (1.0 + scale_error);
+                let r = gravity_m_s2 / k;
+                [bias / k, r * misalignment.cos(), r * misalignment.sin()]
+            }
+        }
+    }
+
     /// Parameters at a solution and their Jacobian.
     ///
     /// **Model** with `R = √(β²+γ²)`: `Δa = α g/R`, `Δφ = atan2(γ, β)`, `δk = g/(R k0) − 1`.

@@ -5,6 +5,7 @@
 mod bench;
 mod plan;
 mod record;
+mod terms;
 mod values;
 
 use crate::assess::for_want_of_runs;
@@ -100,6 +101,9 @@ impl FindingKind {
             K::SettlingLeftOut => record::settling_left_out(),
             K::DwellsCutOut => record::dwells_cut_out(),
             K::AngleOutsideRange => bench::angle_outside_range(),
+            K::TermEntered => terms::term_entered(),
+            K::TermNotIdentifiable => terms::term_not_identifiable(),
+            K::TermNeedsTemperature => terms::term_needs_temperature(),
         }
     }
 

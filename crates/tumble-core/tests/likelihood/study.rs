@@ -41,7 +41,7 @@ pub fn fit(
 ) -> Estimate {
     let bench = truth.bench();
     let refs: Vec<&Position> = positions.iter().collect();
-    let options = EstimateOptions { method, weights, level };
+    let options = EstimateOptions { method, weights, level, ..EstimateOptions::default() };
     estimate(&refs, &truth.setting(&bench), &options).unwrap()
 }
 

@@ -5,6 +5,7 @@
 //! determined, and for infinite degrees of freedom.
 
 mod build;
+mod terms;
 mod types;
 
 use std::io::Read as _;
