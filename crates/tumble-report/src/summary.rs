@@ -181,12 +181,8 @@ fn further_terms(out: &mut String, p: &Passport) {
     let bound = p.terms.first().and_then(|t| t.in_usual_unit.bound.map(|b| (t, b)));
     if let Some((t, bound)) = bound {
         let unit = shortened(&t.in_usual_unit.unit, 12);
-        let text = format!(
-            "none; {} at most {} {unit} ({})",
-            named(t),
-            significant(bound, 2),
-            level(p)
-        );
+        let text =
+            format!("none; {} at most {} {unit} ({})", named(t), significant(bound, 2), level(p));
         row(out, "further terms", &text);
     }
 }

@@ -81,7 +81,10 @@ mod tests {
                 bias_m_s2: 0.0123,
                 quantizer_offset: offset,
                 covariance: [[0.0; 2]; 2],
-                nonlinearity: crate::Nonlinearity { k2_per_m_s2: 1e-5, ..crate::Nonlinearity::default() },
+                nonlinearity: crate::Nonlinearity {
+                    k2_per_m_s2: 1e-5,
+                    ..crate::Nonlinearity::default()
+                },
             };
             let codes: [i32; 9] = [i32::MIN, -2048, -1, 0, 1, 2, 77, 2047, i32::MAX];
             let mut out = [0.0; 9];

@@ -52,8 +52,7 @@ impl Nonlinearity {
     pub fn distort_m_s2(&self, a_m_s2: f64, kelvin: f64) -> f64 {
         let a = a_m_s2;
         let slope = 1.0 + 0.5 * sign(a) * self.scale_sign + self.scale_per_k * kelvin;
-        self.bias_per_k_m_s2 * kelvin
-            + a * (slope + a * (self.k2_per_m_s2 + a * self.k3_per_m2_s4))
+        self.bias_per_k_m_s2 * kelvin + a * (slope + a * (self.k2_per_m_s2 + a * self.k3_per_m2_s4))
     }
 
     /// `dx/da`.
@@ -91,8 +90,7 @@ impl Nonlinearity {
     /// latter two alone; and the square of `da/dx`, which all of it must be multiplied with.
     pub(crate) fn variance(&self, n: f64, a: f64, kelvin: f64) -> (f64, f64) {
         // x = n k* − Δa is what the terms explain: ∂/∂(k*, Δa, K2, K3, K1′, c_T, s_T).
-        let gradient =
-            [n, -1.0, -a * a, -a * a * a, -0.5 * a * sign(a), -kelvin, -kelvin * a];
+        let gradient = [n, -1.0, -a * a, -a * a * a, -0.5 * a * sign(a), -kelvin, -kelvin * a];
         let mut sum = 0.0;
         for (i, row) in self.covariance.iter().enumerate() {
             for (j, c) in row.iter().enumerate() {

@@ -340,8 +340,7 @@ fn adjust(
     if positions.is_empty() {
         return None;
     }
-    let estimated =
-        estimate_with_terms(positions, setting, options, with.set, with.reference_degc);
+    let estimated = estimate_with_terms(positions, setting, options, with.set, with.reference_degc);
     let error = match estimated {
         Ok(e) => return Some(e),
         Err(error) => error,

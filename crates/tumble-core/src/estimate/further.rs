@@ -20,7 +20,7 @@ use crate::linalg::{Matrix, RANK_CONDITION_LIMIT, Triangular};
 /// Rounds of coefficients and adjustment; two to five are usual.
 const MAX_ROUNDS: usize = 25;
 /// Last change of a coefficient over its standard deviation at which the rounds stop, and that is still borne.
-const SETTLED: f64 = 1e-3;
+const SETTLED: f64 = 1e-2;
 const SETTLED_ENOUGH: f64 = 0.05;
 /// The same where a round costs nothing and rounding allows it.
 const SETTLED_EXACT: f64 = 1e-10;
@@ -203,7 +203,8 @@ impl Model<'_> {
         fit.dof = core::array::from_fn(|i| dof[i]);
         fit.profile = None;
         fit.covariance = covariance.as_ref().map(|c| {
-            let three: [[f64; 3]; 3] = core::array::from_fn(|i| core::array::from_fn(|k| c[(i, k)]));
+            let three: [[f64; 3]; 3] =
+                core::array::from_fn(|i| core::array::from_fn(|k| c[(i, k)]));
             Matrix::from_rows(three)
         });
         let at = self.geometry(&fit);

@@ -12,7 +12,7 @@ mod sequential;
 mod terms;
 mod types;
 
-pub use design::{Prediction, predict};
+pub use design::{Prediction, predict, predict_with_terms};
 pub use equations::{Equation, equations};
 pub use paper::WeightedRow;
 pub use sequential::{SequentialEstimate, Stabilization};

@@ -151,8 +151,10 @@ impl Truth {
             let misalignment = if seat == Seat::Table { self.misalignment_rad } else { 0.0 };
             let true_rad = angle.rad() + misalignment + off_arcmin * ARCMIN_RAD * normal();
             let share = j as f64 / (plan.len() - 1) as f64;
-            let temperature_degc = self.temperature_degc.map(|(from, to)| from + (to - from) * share);
-            let kelvin = self.temperature_degc.map_or(0.0, |(from, to)| (to - from) * (share - 0.5));
+            let temperature_degc =
+                self.temperature_degc.map(|(from, to)| from + (to - from) * share);
+            let kelvin =
+                self.temperature_degc.map_or(0.0, |(from, to)| (to - from) * (share - 0.5));
             let a = GRAVITY * true_rad.sin();
             let added: f64 = self.further.iter().map(|(t, c)| c * t.basis(a, kelvin)).sum();
             let level = self.full_scale() * true_rad.sin()

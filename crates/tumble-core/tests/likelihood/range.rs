@@ -20,7 +20,11 @@ fn try_fit(
 ) -> Result<Estimate, EstimateError> {
     let bench = truth.bench();
     let refs: Vec<&Position> = positions.iter().collect();
-    estimate(&refs, &truth.setting(&bench), &EstimateOptions { method, weights, ..EstimateOptions::default() })
+    estimate(
+        &refs,
+        &truth.setting(&bench),
+        &EstimateOptions { method, weights, ..EstimateOptions::default() },
+    )
 }
 
 fn fit(truth: &Truth, positions: &[Position], weights: Weights) -> Estimate {

@@ -287,10 +287,7 @@ fn run(
         },
         covariance: e.and_then(|e| e.covariance.as_ref()).map(three),
         terms: e.map(run_terms).unwrap_or_default(),
-        full_covariance: e
-            .and_then(|e| e.full_covariance.as_ref())
-            .map(square)
-            .unwrap_or_default(),
+        full_covariance: e.and_then(|e| e.full_covariance.as_ref()).map(square).unwrap_or_default(),
         residual_std_lsb: e.and_then(|e| e.residual_std_lsb),
         reading_std_lsb: r.reading_std_lsb,
         condition_number: e.and_then(|e| finite(e.condition)),

@@ -12,9 +12,7 @@ pub(super) fn terms_option(options: &EstimateOptions) -> String {
         (Method::Paper, _) => "none".into(),
         (_, TermChoice::Auto) => "auto".into(),
         (_, TermChoice::Named(set)) if set.is_empty() => "none".into(),
-        (_, TermChoice::Named(set)) => {
-            set.iter().map(|t| t.name()).collect::<Vec<_>>().join(",")
-        }
+        (_, TermChoice::Named(set)) => set.iter().map(|t| t.name()).collect::<Vec<_>>().join(","),
     }
 }
 

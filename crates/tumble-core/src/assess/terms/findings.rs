@@ -82,9 +82,7 @@ fn not_identifiable(t: &TriedTerm) -> Finding {
     Finding {
         kind: FindingKind::TermNotIdentifiable,
         place: t.term.name().into(),
-        observed: t
-            .obstacle()
-            .unwrap_or_else(|| "the runs do not all determine it".into()),
+        observed: t.obstacle().unwrap_or_else(|| "the runs do not all determine it".into()),
         limit: "expanded uncertainties within their targets, with the term in".into(),
         remedy: format!("{}; or leave {} out of --terms", to_measure(t.term), t.term.name()),
     }
@@ -120,7 +118,10 @@ pub(in crate::assess) fn explain_structure(findings: &mut [Finding], terms: &Ter
         let size = tried.test.map(|t| format!(" of {:+.0} {unit}", t.effect_lsb * factor));
         let why = match tried.obstacle() {
             Some(why) if !tried.is_identifiable() => format!("{why}: {}", to_measure(term)),
-            Some(why) => format!("{why}; if it is the sensor's all the same, name it: --terms {}", term.name()),
+            Some(why) => format!(
+                "{why}; if it is the sensor's all the same, name it: --terms {}",
+                term.name()
+            ),
             None => format!("if it is the sensor's, name it: --terms {}", term.name()),
         };
         f.remedy.push_str(&format!(

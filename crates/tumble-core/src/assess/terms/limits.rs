@@ -45,11 +45,14 @@ fn of_type(term: Term, kind: &SensorType) -> Option<f64> {
         let range_gn = kind.modes.iter().filter_map(|m| m.range_gn).reduce(f64::max)?;
         Some((largest(LimitOf::Nonlinearity)? / 100.0, range_gn * gn))
     };
-    Some(BEYOND_TYPE * match term {
-        Term::K2 => nonlinearity().map(|(share, f)| share * 2.0 / f)?,
-        Term::K3 => nonlinearity().map(|(share, f)| share * 4.0 / (f * f))?,
-        Term::ScaleSign => nonlinearity().map(|(share, _)| share * 4.0)?,
-        Term::TempBias => largest(LimitOf::ZeroGTempco)? * 1e-3 * gn,
-        Term::TempScale => largest(LimitOf::ScaleTempco)? / 100.0,
-    })
+    Some(
+        BEYOND_TYPE
+            * match term {
+                Term::K2 => nonlinearity().map(|(share, f)| share * 2.0 / f)?,
+                Term::K3 => nonlinearity().map(|(share, f)| share * 4.0 / (f * f))?,
+                Term::ScaleSign => nonlinearity().map(|(share, _)| share * 4.0)?,
+                Term::TempBias => largest(LimitOf::ZeroGTempco)? * 1e-3 * gn,
+                Term::TempScale => largest(LimitOf::ScaleTempco)? / 100.0,
+            },
+    )
 }

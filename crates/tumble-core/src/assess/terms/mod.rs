@@ -55,12 +55,8 @@ pub(super) struct Choosing<'a> {
 
 /// `T̄`: mean temperature of all positions on the table; absent where one was not recorded.
 pub(super) fn reference_temperature(experiment: &Experiment) -> Option<f64> {
-    let all: Option<Vec<f64>> = experiment
-        .runs
-        .iter()
-        .flat_map(|r| &r.positions)
-        .map(|p| p.temperature_degc)
-        .collect();
+    let all: Option<Vec<f64>> =
+        experiment.runs.iter().flat_map(|r| &r.positions).map(|p| p.temperature_degc).collect();
     crate::stats::mean(&all?)
 }
 
@@ -73,10 +69,8 @@ impl Choosing<'_> {
             TermChoice::Named(set) => self.named(set, plain, estimate),
             TermChoice::Auto => self.by_themselves(plain, estimate),
         };
-        let tried =
-            Term::ALL.into_iter().map(|t| self.tried(t, &estimated.0, entered)).collect();
-        let terms =
-            Terms { tried, entered, reference_temperature_degc: self.reference_degc };
+        let tried = Term::ALL.into_iter().map(|t| self.tried(t, &estimated.0, entered)).collect();
+        let terms = Terms { tried, entered, reference_temperature_degc: self.reference_degc };
         (estimated, terms)
     }
 
@@ -110,10 +104,8 @@ impl Choosing<'_> {
         if explained_otherwise(&at.1) {
             return (at, entered);
         }
-        let family = Term::ALL
-            .iter()
-            .filter(|t| self.tried(**t, &at.0, entered).test.is_some())
-            .count();
+        let family =
+            Term::ALL.iter().filter(|t| self.tried(**t, &at.0, entered).test.is_some()).count();
         let mut closed = [false; 2];
         while !(closed[0] && closed[1]) {
             let threshold = FAMILY_LEVEL / (family - entered.len()).max(1) as f64;
@@ -144,14 +136,12 @@ impl Choosing<'_> {
     /// Whether a term, once entered, is the sensor's: the runs agree on it, and where errors of the positions repeat from
     /// run to run (then runs are no independent evidence) each run shows it alone.
     fn holds_up(&self, after: &TriedTerm, runs: &[RunAssessment], threshold: f64) -> bool {
-        eprintln!("DBG {:?} may {} disagree {} rep {:?} {:?} plaus {} {:?}", after.term, after.may_enter(), pooled::disagreement(after.term, runs), super::repeated_share(runs), after.test, after.is_plausible(), runs.iter().map(|r| r.estimate.as_ref().unwrap().terms.clone()).collect::<Vec<_>>());
         if !after.may_enter() || pooled::disagreement(after.term, runs) < AGREE_LEVEL {
             return false;
         }
         super::repeated_share(runs).is_none()
-            || (0..runs.len()).all(|i| {
-                self.test(after.term, &runs[i..=i]).is_none_or(|t| t.p_value < threshold)
-            })
+            || (0..runs.len())
+                .all(|i| self.test(after.term, &runs[i..=i]).is_none_or(|t| t.p_value < threshold))
     }
 }
 

@@ -1,8 +1,8 @@
 //! Terms from all runs: mean of the runs, and what compensation needs of them.
 
+use crate::Nonlinearity;
 use crate::assess::{Interval, PooledParameter, RunAssessment};
 use crate::estimate::{Estimate, Parameter, Term, TermEstimate, added_m_s2};
-use crate::Nonlinearity;
 use crate::linalg::Matrix;
 use crate::stats::{chi_squared_p_value, mean, sample_std, student_factor};
 
@@ -101,9 +101,8 @@ impl CompensationTerms {
         let of = |term| {
             self.coefficients.iter().find(|(t, _)| *t == term).map_or(0.0, |(_, value)| *value)
         };
-        let place = |term: Term| {
-            self.coefficients.iter().position(|(t, _)| *t == term).map(|i| 2 + i)
-        };
+        let place =
+            |term: Term| self.coefficients.iter().position(|(t, _)| *t == term).map(|i| 2 + i);
         let columns: [Option<usize>; 7] = core::array::from_fn(|i| match i {
             0 | 1 => Some(i),
             _ => place(Term::ALL[i - 2]),

@@ -3,9 +3,7 @@
 use super::pooled::{PooledTerm, pooled};
 use super::{Choosing, limits};
 use crate::assess::RunAssessment;
-use crate::estimate::{
-    Estimate, Method, Parameter, Term, TermChoice, TermSet, WeightedRow,
-};
+use crate::estimate::{Estimate, Method, Parameter, Term, TermChoice, TermSet, WeightedRow};
 use crate::linalg::{Matrix, Triangular};
 use crate::stats::student_factor;
 use crate::term::{TermTest, test_term};
@@ -70,9 +68,7 @@ impl TriedTerm {
 
     /// Whether everything but significance lets it in.
     pub(super) fn may_enter(&self) -> bool {
-        self.is_identifiable()
-            && self.is_plausible()
-            && self.test.is_some_and(|t| t.bic_gain > 0.0)
+        self.is_identifiable() && self.is_plausible() && self.test.is_some_and(|t| t.bic_gain > 0.0)
     }
 
     /// Why a significant term did not enter by itself, for people.
@@ -232,22 +228,30 @@ fn quadratic(c: &Matrix, d: [f64; 3]) -> f64 {
     (0..3).map(|i| (0..3).map(|j| d[i] * c[(i, j)] * d[j]).sum::<f64>()).sum()
 }
 
-/// Rows of a run as they are without a term that is in them: its share goes back into the residuals.
+/// Rows of a run as they are without a term that is in them: what only that term explains goes back into the residuals.
 fn without(term: Term, e: &Estimate, column: &[f64]) -> Vec<WeightedRow> {
     let Some((place, t)) = e.terms.iter().enumerate().find(|(_, t)| t.term == term) else {
         return e.weighted_rows.clone();
     };
-    e.weighted_rows
-        .iter()
-        .zip(column)
-        .map(|(w, z)| {
-            let mut row = *w;
-            row.residual += t.value * z / w.sd_lsb;
-            row.further[place..].rotate_left(1);
-            if let Some(last) = row.further.last_mut() {
-                *last = 0.0;
-            }
-            row
-        })
-        .collect()
+    let mut rows = e.weighted_rows.clone();
+    for row in &mut rows {
+        row.further[place..].rotate_left(1);
+        if let Some(last) = row.further.last_mut() {
+            *last = 0.0;
+        }
+    }
+    let further = WeightedRow::further_columns(&rows);
+    let full = |w: &WeightedRow| -> Vec<f64> {
+        w.row.iter().chain(&w.further[..further]).copied().collect()
+    };
+    let mut triangle = Triangular::new(3 + further);
+    for (w, z) in rows.iter().zip(column) {
+        triangle.push(&full(w), z / w.sd_lsb);
+    }
+    let Ok(explained) = triangle.solve() else { return rows };
+    for (w, z) in rows.iter_mut().zip(column) {
+        let by_others: f64 = full(w).iter().zip(&explained).map(|(x, b)| x * b).sum();
+        w.residual += t.value * (z / w.sd_lsb - by_others);
+    }
+    rows
 }
