@@ -7,7 +7,7 @@ use crate::{Code, ConverterEnds, Quantizer};
 /// The coefficients of a passport with what is known about single readings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Compensator {
-    /// Scale factor, bias, quantizer offset and their covariance.
+    /// Scale factor, bias, quantizer offset, further terms and their covariance.
     pub coefficients: Compensation,
     /// The converter.
     pub quantizer: Quantizer,
@@ -39,10 +39,24 @@ impl Compensator {
     /// Compensates one reading; `None` where the converter stood at its end, which is no measurement.
     ///
     /// **Uncertainty** `u_calibration` holds the passport's covariance of scale factor and bias; `u_reading` the
-    /// scatter of single readings within dwells, at least the resolution. Temperature, vibration and
-    /// nonlinearity are in neither.
+    /// scatter of single readings within dwells, at least the resolution. Vibration, and temperature and
+    /// nonlinearity beyond the passport's further terms, are in neither.
+    ///
+    /// Terms on temperature are taken at their reference: see [`Self::needs_temperature`].
     #[must_use]
     pub fn compensate(&self, reading: f64) -> Option<Compensated> {
+        self.compensate_at(reading, self.coefficients.nonlinearity.reference_temperature_degc)
+    }
+
+    /// Whether the passport has terms on temperature: readings then need one.
+    #[must_use]
+    pub fn needs_temperature(&self) -> bool {
+        self.coefficients.nonlinearity.needs_temperature()
+    }
+
+    /// [`Self::compensate`] at a temperature, °C.
+    #[must_use]
+    pub fn compensate_at(&self, reading: f64, temperature_degc: f64) -> Option<Compensated> {
         let quantized = self.quantizer != Quantizer::None;
         if quantized && self.ends.censors(Code(reading as i32)) {
             return None;
@@ -52,8 +66,11 @@ impl Compensator {
         let reading_std = self.reading_std_lsb.unwrap_or(0.0).max(floor);
         let (low, high) = self.valid_range_lsb;
         Some(Compensated {
-            acceleration_m_s2: c.acceleration_of_mean_m_s2(reading),
-            u_calibration_m_s2: c.calibration_variance(reading).max(0.0).sqrt(),
+            acceleration_m_s2: c.acceleration_at_m_s2(reading, temperature_degc),
+            u_calibration_m_s2: c
+                .calibration_variance_at(reading, temperature_degc)
+                .max(0.0)
+                .sqrt(),
             u_reading_m_s2: c.scale_factor_m_s2_per_lsb * reading_std,
             inside_range: (low..=high).contains(&reading),
         })
@@ -72,6 +89,7 @@ mod tests {
                 bias_m_s2: 0.5,
                 quantizer_offset: QuantizerOffset::HalfSign,
                 covariance: [[4e-12, 0.0], [0.0, 9e-6]],
+                nonlinearity: crate::Nonlinearity::default(),
             },
             quantizer: Quantizer::Truncate,
             ends: ConverterEnds { min_code: Some(Code(-2048)), max_code: Some(Code(2047)) },

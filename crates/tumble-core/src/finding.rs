@@ -206,6 +206,12 @@ finding_kinds! {
     DwellsCutOut = "T0319", Note, "dwells were cut out of a continuous record";
     /// Dwells beyond the stated range of the table.
     AngleOutsideRange = "T0320", Warning, "dwells outside the table's stated range";
+    /// A further term entered by itself.
+    TermEntered = "T0321", Warning, "a further term was entered";
+    /// A further term was named that the plan cannot bear.
+    TermNotIdentifiable = "T0322", Missing, "the positions do not determine a further term";
+    /// A term on temperature was named, and temperatures are missing.
+    TermNeedsTemperature = "T0323", Missing, "a term on temperature needs temperatures";
     /// Defaults make up a good part of an uncertainty.
     BudgetAssumed = "T0328", Note, "a good part of the uncertainty is assumed";
     /// Monte Carlo does not confirm an interval.

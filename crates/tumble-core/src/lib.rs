@@ -46,7 +46,7 @@ pub use histogram::CodeHistogram;
 pub use nominal::{
     NominalScale, NominalScaleError, NominalScaleSource, nominal_scale, nominal_scale_from_means,
 };
-pub use quantizer::{Compensation, ConverterEnds, Quantizer, QuantizerOffset};
+pub use quantizer::{Compensation, ConverterEnds, Nonlinearity, Quantizer, QuantizerOffset};
 pub use readings::{Readings, ValueMoments, ValueOutOfRange};
 pub use record::{Dial, Record, Timing};
 pub use sensor_type::{LimitOf, Mark, SensitivityUnit, SensorMode, SensorType, TypeLimit};

@@ -1,6 +1,6 @@
 //! What the converter does to the analogue value.
 
-pub use tumble_runtime::{Compensation, QuantizerOffset};
+pub use tumble_runtime::{Compensation, Nonlinearity, QuantizerOffset};
 
 use crate::Code;
 

@@ -49,3 +49,32 @@ fn uncertainties_of_six_plans() {
         assert!((p.correlation_bias_misalignment - expected[4]).abs() < 5.1e-4, "{name}");
     }
 }
+
+/// Method section 8, end: what K2 costs, 60 positions and 0.2 LSB of scatter.
+#[test]
+fn what_k2_costs_the_bias() {
+    use tumble_core::estimate::{Term, TermSet, predict_with_terms};
+    use tumble_core::{Angle, Seat};
+    let k0 = 0.007_69;
+    let equal = |range: f64| -> Vec<f64> {
+        (0..60).map(|i| -range + 2.0 * range * f64::from(i) / 59.0).collect()
+    };
+    let table = |angles: Vec<f64>| -> Vec<(Angle, Seat)> {
+        angles.into_iter().map(|a| (Angle::from_deg(a), Seat::Table)).collect()
+    };
+    let paper = table((-30..30).map(f64::from).collect());
+    let mut with_pair = table(equal(65.0));
+    with_pair.extend([(Angle::from_deg(90.0), Seat::Up), (Angle::from_deg(-90.0), Seat::Down)]);
+    let k2 = TermSet::EMPTY.with(Term::K2);
+    for (name, plan, terms, bias_lsb) in [
+        ("-30 to 29°", &paper, TermSet::EMPTY, 0.62),
+        ("-30 to 29°, K2", &paper, k2, 35.0),
+        ("±60°, K2", &table(equal(60.0)), k2, 2.0),
+        ("±65°, K2", &table(equal(65.0)), k2, 1.44),
+        ("±65°, up and down, K2", &with_pair, k2, 0.44),
+    ] {
+        let u = predict_with_terms(plan, terms, 0.2 * k0, 9.81).unwrap().u_bias_m_s2 / k0;
+        println!("{name}: {u:.3} LSB");
+        assert!((u / bias_lsb - 1.0).abs() < 0.02, "{name}: {u:.3} LSB against {bias_lsb}");
+    }
+}

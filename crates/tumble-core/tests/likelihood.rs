@@ -17,3 +17,5 @@ mod gain;
 mod range;
 #[path = "likelihood/study.rs"]
 mod study;
+#[path = "likelihood/terms.rs"]
+mod terms;

@@ -1,6 +1,11 @@
 //! From a passport to coefficients at work.
 
-use tumble_core::{Code, Compensation, Compensator, ConverterEnds, Quantizer, QuantizerOffset};
+use tumble_core::assess::CompensationTerms;
+use tumble_core::estimate::Term;
+use tumble_core::linalg::Matrix;
+use tumble_core::{
+    Code, Compensation, Compensator, ConverterEnds, Nonlinearity, Quantizer, QuantizerOffset,
+};
 
 use crate::passport::{self, Passport};
 
@@ -116,6 +121,51 @@ fn impossible(c: &passport::Compensation) -> Option<&'static str> {
     }
 }
 
+/// Further terms as the runtime takes them.
+fn nonlinearity(terms: &passport::CompensationTerms) -> Result<Nonlinearity, CompensationRefused> {
+    let impossible = |field| Err(CompensationRefused::Impossible { field });
+    let size = 2 + terms.coefficients.len();
+    let mut coefficients: Vec<(Term, f64)> = Vec::new();
+    for c in &terms.coefficients {
+        let Some(term) = Term::from_name(&c.name) else {
+            return Err(CompensationRefused::Unknown {
+                field: "compensation.terms",
+                seen: c.name.clone(),
+            });
+        };
+        if !(c.value.abs() < LARGEST) || coefficients.iter().any(|(t, _)| *t == term) {
+            return impossible("compensation.terms.coefficients");
+        }
+        coefficients.push((term, c.value));
+    }
+    let needs_temperature = coefficients.iter().any(|(t, _)| t.needs_temperature());
+    let reference = terms.reference_temperature_degc;
+    if reference.is_some_and(|t| !(t.abs() < LARGEST)) || (needs_temperature && reference.is_none())
+    {
+        return impossible("compensation.terms.reference_temperature_degc");
+    }
+    let rows = &terms.covariance;
+    if rows.len() != size || rows.iter().any(|r| r.len() != size) {
+        return impossible("compensation.terms.covariance");
+    }
+    let mut covariance = Matrix::zeros(size, size);
+    for (i, row) in rows.iter().enumerate() {
+        for (j, value) in row.iter().enumerate() {
+            if !(value.abs() < LARGEST) || (i == j && *value < 0.0) {
+                return impossible("compensation.terms.covariance");
+            }
+            covariance[(i, j)] = *value;
+        }
+    }
+    Ok(CompensationTerms {
+        coefficients,
+        reference_temperature_degc: reference,
+        covariance,
+        peak_m_s2: terms.terms_peak_m_s2,
+    }
+    .nonlinearity())
+}
+
 /// Coefficients of a passport.
 ///
 /// **Errors** [`CompensationRefused`] where the verdict does not allow it.
@@ -150,12 +200,14 @@ pub fn compensator(passport: &Passport, proof: Proof) -> Result<Compensator, Com
     if let Some(field) = impossible(c) {
         return Err(CompensationRefused::Impossible { field });
     }
+    let nonlinearity = c.terms.as_ref().map_or(Ok(Nonlinearity::default()), nonlinearity)?;
     let compensator = Compensator {
         coefficients: Compensation {
             scale_factor_m_s2_per_lsb: c.scale_factor,
             bias_m_s2: c.bias,
             quantizer_offset,
             covariance: c.covariance,
+            nonlinearity,
         },
         quantizer,
         ends: ConverterEnds {
@@ -188,6 +240,7 @@ mod tests {
             valid_range_lsb: [-1000.0, 1000.0],
             covariance: [[4e-12, 1e-9], [1e-9, 9e-6]],
             reading_std_lsb: Some(1.2),
+            terms: None,
             example: passport::Example { code: 0, acceleration_m_s2: 0.0 },
         };
         assert_eq!(impossible(&c), None);

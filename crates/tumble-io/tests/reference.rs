@@ -22,12 +22,8 @@ fn answers() -> Value {
 }
 
 fn run(name: &str, method: Method) -> Passport {
-    let estimate = EstimateOptions {
-        method,
-        weights: Weights::Equal,
-        level: 0.95,
-        ..EstimateOptions::default()
-    };
+    let estimate =
+        EstimateOptions { method, weights: Weights::Equal, ..EstimateOptions::default() };
     let options = CertifyOptions { estimate, ..CertifyOptions::default() };
     certify(&reference().join(name), &options).unwrap()
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use tumble_core::FindingKind;
-use tumble_io::passport::{Estimate, Finding, Passport, Scatter};
+use tumble_io::passport::{Estimate, Finding, Passport, Scatter, Term};
 
 use crate::merge::merged;
 use crate::numbers::{interval, significant, value_with_uncertainty};
@@ -156,6 +156,7 @@ fn numbers(out: &mut String, p: &Passport) {
         );
         row(out, "error level", &text);
     }
+    further_terms(out, p);
     table_repeats(out, p);
     let settled: Vec<String> =
         p.runs.iter().filter_map(|r| r.settled_at.map(|n| n.to_string())).collect();
@@ -176,6 +177,27 @@ fn numbers(out: &mut String, p: &Passport) {
                 significant(c.example.acceleration_m_s2, 6)
             ),
         );
+    }
+}
+
+/// Terms of the model beside the three, or what the data say against the usual one.
+fn further_terms(out: &mut String, p: &Passport) {
+    let named = |t: &Term| shortened(&t.name, 12);
+    for t in p.terms.iter().filter(|t| t.entered).take(5) {
+        let (usual, unit) = (&t.in_usual_unit, shortened(&t.in_usual_unit.unit, 12));
+        if let (Some(v), Some(u)) = (usual.value, usual.expanded_uncertainty) {
+            row(out, &named(t), &format!("{} {unit}", value_with_uncertainty(v, u)));
+        }
+    }
+    if p.terms.iter().any(|t| t.entered) {
+        return;
+    }
+    let bound = p.terms.first().and_then(|t| t.in_usual_unit.bound.map(|b| (t, b)));
+    if let Some((t, bound)) = bound {
+        let unit = shortened(&t.in_usual_unit.unit, 12);
+        let text =
+            format!("none; {} at most {} {unit} ({})", named(t), significant(bound, 2), level(p));
+        row(out, "further terms", &text);
     }
 }
 

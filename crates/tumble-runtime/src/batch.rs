@@ -20,14 +20,15 @@ impl core::fmt::Display for LengthMismatch {
 impl core::error::Error for LengthMismatch {}
 
 impl Compensation {
-    /// Accelerations of a batch of codes, m/s².
+    /// Accelerations of a batch of codes, m/s², at the reference temperature where there are terms on temperature.
     ///
     /// **Errors** [`LengthMismatch`] when the slices differ in length; nothing is written then.
     ///
     /// ```
-    /// # use tumble_runtime::{Compensation, QuantizerOffset};
+    /// # use tumble_runtime::{Compensation, Nonlinearity, QuantizerOffset};
     /// # let unit = Compensation { scale_factor_m_s2_per_lsb: 0.5, bias_m_s2: 1.0,
-    /// #     quantizer_offset: QuantizerOffset::Half, covariance: [[0.0; 2]; 2] };
+    /// #     quantizer_offset: QuantizerOffset::Half, covariance: [[0.0; 2]; 2],
+    /// #     nonlinearity: Nonlinearity::default() };
     /// let mut out = [0.0; 3];
     /// unit.apply(&[-1, 0, 7], &mut out)?;
     /// assert_eq!(out, [-1.25, -0.75, 2.75]);
@@ -58,6 +59,12 @@ impl Compensation {
                 }
             }
         }
+        // Further terms in a pass of their own: without any, nothing is paid for them.
+        if !self.nonlinearity.is_none() {
+            for a in accelerations.iter_mut() {
+                *a = self.nonlinearity.undo_m_s2(*a, 0.0);
+            }
+        }
         Ok(())
     }
 }
@@ -74,6 +81,10 @@ mod tests {
                 bias_m_s2: 0.0123,
                 quantizer_offset: offset,
                 covariance: [[0.0; 2]; 2],
+                nonlinearity: crate::Nonlinearity {
+                    k2_per_m_s2: 1e-5,
+                    ..crate::Nonlinearity::default()
+                },
             };
             let codes: [i32; 9] = [i32::MIN, -2048, -1, 0, 1, 2, 77, 2047, i32::MAX];
             let mut out = [0.0; 9];

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, CommandFactory as _, FromArgMatches as _, Parser, Subcommand, ValueEnum};
 use tumble_core::Angle;
+use tumble_core::estimate::{Term, TermChoice, TermSet};
 
 use crate::quantity::{self, AccelerationArg, NoiseArg};
 
@@ -194,6 +195,9 @@ pub(crate) struct CertifyArgs {
     /// Leave positions out of the adjustment (repeatable); the passport says so.
     #[arg(long, value_name = "RUN:POSITION[,…]", value_parser = leave_out)]
     pub(crate) leave_out: Vec<LeaveOut>,
+    /// Further terms: auto, none, or of k2,k3,scale-sign,temp-bias,temp-scale [default: auto].
+    #[arg(long, value_name = "TERMS", value_parser = terms)]
+    pub(crate) terms: Option<TermChoice>,
     /// Your own types of sensors, over the folder's catalogue.toml and the built-in ones.
     #[arg(long, value_name = "FILE")]
     pub(crate) catalogue: Option<PathBuf>,
@@ -235,10 +239,39 @@ fn leave_out(text: &str) -> Result<LeaveOut, String> {
     }
 }
 
+/// `auto`, `none`, or names of terms.
+fn terms(text: &str) -> Result<TermChoice, String> {
+    match text.trim() {
+        "auto" => return Ok(TermChoice::Auto),
+        "none" => return Ok(TermChoice::Named(TermSet::EMPTY)),
+        _ => {}
+    }
+    let of = |name: &str| {
+        Term::from_name(name).ok_or_else(|| {
+            let all: Vec<&str> = Term::ALL.iter().map(|t| t.name()).collect();
+            format!(
+                "no term is called `{}`; did you mean {}? There are {}, or auto, or none",
+                name.trim().escape_debug(),
+                Term::nearest(name).name(),
+                all.join(", ")
+            )
+        })
+    };
+    text.split(',').map(of).collect::<Result<TermSet, String>>().map(TermChoice::Named)
+}
+
 fn level(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(v) if (0.5..1.0).contains(&v) => Ok(v),
         _ => Err("give a level between 0.5 and 1, for instance 0.95".into()),
+    }
+}
+
+/// A temperature that readings can have.
+fn degc(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(v) if (-273.15..=1000.0).contains(&v) => Ok(v),
+        _ => Err("give degrees Celsius, for instance 21.5".into()),
     }
 }
 
@@ -440,6 +473,9 @@ pub(crate) struct CompensateArgs {
     /// Use coefficients whose reproducibility is not shown.
     #[arg(long)]
     pub(crate) unproven: bool,
+    /// Temperature of all readings, °C, where they have no column `temperature_degc`.
+    #[arg(long, value_name = "DEGC", allow_hyphen_values = true, value_parser = degc)]
+    pub(crate) temperature: Option<f64>,
     /// No remarks on standard error.
     #[arg(long)]
     pub(crate) quiet: bool,

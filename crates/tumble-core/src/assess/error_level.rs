@@ -1,7 +1,7 @@
 //! Error level before and after compensation (the paper's figure 4), in sample and held out.
 
 use super::RunAssessment;
-use crate::estimate::{Estimate, Setting};
+use crate::estimate::{Estimate, Setting, Term};
 use crate::stats::{mean, root_mean_square};
 use crate::{Finding, FindingKind};
 
@@ -54,12 +54,21 @@ fn errors(
     estimate: &Estimate,
     setting: &Setting<'_>,
     theta: [f64; 3],
+    terms: &[(Term, f64)],
 ) -> Vec<f64> {
     let g = setting.bench.gravity.value_m_s2;
+    let reference = estimate.reference_temperature_degc;
+    let added = |a: f64, t: Option<f64>| -> f64 {
+        let kelvin = t.zip(reference).map_or(0.0, |(t, r)| t - r);
+        terms.iter().map(|(term, c)| c * term.basis(a, kelvin)).sum()
+    };
     let [bias, misalignment, scale_error] = theta;
     let k = setting.nominal_scale_m_s2_per_lsb * (1.0 + scale_error);
     table_positions(run, estimate, setting)
-        .map(|(angle, analogue)| (k * analogue - bias - g * (angle + misalignment).sin()) / k)
+        .map(|(angle, analogue, t)| {
+            let a = g * (angle + misalignment).sin();
+            (k * analogue - bias - a - added(a, t)) / k
+        })
         .collect()
 }
 
@@ -67,16 +76,16 @@ fn table_positions<'a>(
     run: &'a RunAssessment,
     estimate: &'a Estimate,
     setting: &'a Setting<'_>,
-) -> impl Iterator<Item = (f64, f64)> + 'a {
+) -> impl Iterator<Item = (f64, f64, Option<f64>)> + 'a {
     let upright =
         |deg: f64| setting.bench.seat(crate::Angle::from_deg(deg)).vertical_sign().is_some();
     estimate
         .residuals
         .iter()
-        .zip(&run.mean_codes)
+        .zip(run.mean_codes.iter().zip(&run.temperatures_degc))
         .filter(move |(r, _)| !upright(r.angle_deg))
-        .filter_map(|(r, mean)| {
-            Some((r.angle_deg.to_radians(), setting.quantizer.analogue_lsb((*mean)?)))
+        .filter_map(|(r, (mean, t))| {
+            Some((r.angle_deg.to_radians(), setting.quantizer.analogue_lsb((*mean)?), *t))
         })
 }
 
@@ -95,8 +104,10 @@ pub fn error_level(runs: &[RunAssessment], setting: &Setting<'_>) -> Option<Erro
     let (mut before, mut after, mut held_out) = (Vec::new(), Vec::new(), Vec::new());
     let mut by_run = Vec::new();
     for (i, (run, estimate, theta)) in full.iter().enumerate() {
-        let own_before: Vec<f64> = errors(run, estimate, setting, [0.0; 3]);
-        let own_after = errors(run, estimate, setting, *theta);
+        let own_before: Vec<f64> = errors(run, estimate, setting, [0.0; 3], &[]);
+        let own_terms: Vec<(Term, f64)> =
+            estimate.terms.iter().map(|t| (t.term, t.value)).collect();
+        let own_after = errors(run, estimate, setting, *theta, &own_terms);
         let others = |index: usize, same_mounting: bool| {
             let values: Vec<f64> = full
                 .iter()
@@ -110,7 +121,17 @@ pub fn error_level(runs: &[RunAssessment], setting: &Setting<'_>) -> Option<Erro
         };
         let own_held_out = others(0, false).zip(others(2, false)).map(|(bias, scale)| {
             let misalignment = others(1, true).unwrap_or(theta[1]);
-            errors(run, estimate, setting, [bias, misalignment, scale])
+            let of_others = |term: Term| {
+                let rest = full.iter().enumerate().filter(|(j, _)| *j != i);
+                let values: Vec<f64> = rest
+                    .filter_map(|(_, (_, e, _))| e.terms.iter().find(|t| t.term == term))
+                    .map(|t| t.value)
+                    .collect();
+                mean(&values).map(|value| (term, value))
+            };
+            let terms: Vec<(Term, f64)> =
+                own_terms.iter().filter_map(|(t, _)| of_others(*t)).collect();
+            errors(run, estimate, setting, [bias, misalignment, scale], &terms)
         });
         by_run.extend(
             root_mean_square(own_before.iter().copied())

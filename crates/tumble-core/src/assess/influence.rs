@@ -1,7 +1,7 @@
 //! Influence of temperature and signal level: effect, interval, p-value, and what could have been seen.
 
 use super::RunAssessment;
-use crate::estimate::{Estimate, Parameter, WeightedRow};
+use crate::estimate::{Estimate, Parameter, Term, WeightedRow};
 use crate::stats::mean;
 use crate::term::{TermTest, test_term};
 use crate::{Finding, FindingKind};
@@ -36,6 +36,21 @@ pub struct InfluenceTest {
 }
 
 impl Influence {
+    /// A temperature effect that stands in the model is shown as it was estimated, not as what is left of it.
+    pub(super) fn take_entered(&mut self, terms: &super::Terms, level: f64) {
+        let term = terms.tried.iter().find(|t| t.entered && t.term == Term::TempBias);
+        let Some(test) = term.and_then(|t| t.test) else { return };
+        self.temperature = test.expanded_lsb(level).zip(test.smallest_detectable_lsb()).map(
+            |(expanded_uncertainty, smallest_detectable)| InfluenceTest {
+                effect: test.effect_lsb,
+                expanded_uncertainty,
+                p_value: test.p_value,
+                smallest_detectable,
+                unit: "m/s² per K",
+            },
+        );
+    }
+
     /// Influences that matter.
     #[must_use]
     pub fn findings(&self) -> Vec<Finding> {

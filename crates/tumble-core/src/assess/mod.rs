@@ -10,6 +10,7 @@ mod pair;
 mod pool;
 mod repeat;
 mod result;
+mod terms;
 mod units;
 mod verdict;
 
@@ -25,22 +26,27 @@ pub use pool::{
 };
 pub use repeat::repeated_share;
 pub use result::{CompensationResult, compensation_result};
+pub use terms::{CompensationTerms, PooledTerm, Terms, TriedTerm};
 pub use verdict::{Verdict, may_carry_result, verdict};
 
 pub(crate) use conformity::LOW_TEST_UNCERTAINTY_RATIO;
 pub(crate) use influence::SIGNIFICANCE as INFLUENCE_SIGNIFICANCE;
 pub(crate) use outliers::LEAVABLE_SHARE;
 pub(crate) use repeat::LIMIT as REPEAT_LIMIT;
+pub(crate) use terms::{
+    DEFAULT_K2_UG_G2 as PLAUSIBLE_K2_UG_G2, FAMILY_LEVEL as TERMS_FAMILY_LEVEL,
+};
 pub(crate) use verdict::for_want_of_runs;
 
 use outliers::Material;
 
 use crate::estimate::{
-    Estimate, EstimateOptions, Residual, Setting, Weights, determines_all, estimate,
+    Estimate, EstimateOptions, Residual, Setting, TermSet, Weights, determines_all, estimate,
+    estimate_with_terms,
 };
 use crate::judge::{self, Structure};
 use crate::nominal::{NominalScale, NominalScaleError, nominal_scale};
-use crate::systematic::{Inputs, SystematicEffect, effects};
+use crate::systematic::{ExtraColumn, Inputs, Sites, SystematicEffect, effects, pattern};
 use crate::{
     Experiment, Finding, FindingKind, GravitySource, Orientation, PairUse, Position, Run,
     STANDARD_GRAVITY_M_S2,
@@ -61,6 +67,8 @@ pub struct Assessment {
     pub shared_pair: Option<SharedPair>,
     /// Curvature left over.
     pub structure: Option<Structure>,
+    /// Further terms: what was tried, what was entered.
+    pub terms: Terms,
     /// Temperature and signal level.
     pub influence: Influence,
     /// Positions that do not belong, and those that the user left out.
@@ -202,14 +210,26 @@ pub fn assess_without(
     };
     let inputs = Inputs::of(experiment, k0.value_m_s2_per_lsb);
     let adjusted = adjusted_runs(experiment);
-    let (mut runs, mut materials) = (Vec::new(), Vec::new());
-    for (run, candidates) in &adjusted {
-        let candidates = (candidates.clone(), left_out);
-        let (assessed, material) =
-            assess_run(experiment, (&setting, options, &inputs), run, candidates, &mut findings);
-        runs.push(assessed);
-        materials.push(material);
-    }
+    let reference_degc = terms::reference_temperature(experiment);
+    let choosing = terms::Choosing { experiment, setting: &setting, options, reference_degc };
+    // Which positions are used does not depend on the terms: those of the last pass are those of all.
+    let materials = std::cell::RefCell::new(Vec::new());
+    let ((runs, of_runs), terms) = choosing.choose(|set| {
+        let (mut runs, mut findings, mut used) = (Vec::new(), Vec::new(), Vec::new());
+        let with = With { options, inputs: &inputs, set, reference_degc };
+        for (run, candidates) in &adjusted {
+            let candidates = (candidates.clone(), left_out);
+            let (assessed, material) =
+                assess_run(experiment, &setting, with, run, candidates, &mut findings);
+            runs.push(assessed);
+            used.push(material);
+        }
+        materials.replace(used);
+        (runs, findings)
+    });
+    let materials = materials.into_inner();
+    findings.extend(of_runs);
+    findings.extend(terms::term_findings(&terms, experiment.bench.gravity.value_m_s2));
     judge::some_runs_reversed(&mut findings, &experiment.runs);
 
     let shared_pair = match options.method {
@@ -235,8 +255,10 @@ pub fn assess_without(
     }
     findings.extend(repeated_share(&runs).map(repeat::finding));
     let structure = structure_findings(&runs, &mut findings);
-    let influence = influence(&runs, k0.value_m_s2_per_lsb, options.level);
+    terms::explain_structure(&mut findings, &terms);
+    let mut influence = influence(&runs, k0.value_m_s2_per_lsb, options.level);
     findings.extend(influence.findings());
+    influence.take_entered(&terms, options.level);
     if !contradicted {
         findings.extend(judge::type_limits(&judge::Judged {
             experiment,
@@ -246,7 +268,8 @@ pub fn assess_without(
             influence: &influence,
         }));
     }
-    let judged = (&setting, options);
+    let entered = outliers::Fitted { options, set: terms.entered, reference_degc };
+    let judged = (&setting, entered);
     let outliers = outliers::judge(&materials, &runs, &pooled, judged, &mut findings);
     let error_level = error_level(&runs, &setting);
     findings.extend(error_level.iter().filter_map(ErrorLevel::finding));
@@ -261,13 +284,9 @@ pub fn assess_without(
     let verdict = verdict(&findings);
     let compensation = may_carry_result(&findings)
         .then(|| {
-            compensation_result(
-                &together,
-                whole.as_ref()?,
-                &runs,
-                experiment.output.quantizer,
-                k0.value_m_s2_per_lsb,
-            )
+            let quantizer = experiment.output.quantizer;
+            let scale = k0.value_m_s2_per_lsb;
+            compensation_result(&together, whole.as_ref()?, &runs, (quantizer, scale), &terms)
         })
         .flatten();
     let conformity = conformity(
@@ -287,6 +306,7 @@ pub fn assess_without(
         table_zero: together.table_zero,
         shared_pair,
         structure,
+        terms,
         influence,
         outliers,
         error_level,
@@ -330,14 +350,25 @@ fn adjusted_runs(experiment: &Experiment) -> Vec<(Run, Vec<&Position>)> {
         .collect()
 }
 
+/// How runs are estimated: options, and the further terms of this pass.
+#[derive(Clone, Copy)]
+struct With<'a> {
+    options: &'a EstimateOptions,
+    inputs: &'a Inputs,
+    set: TermSet,
+    reference_degc: Option<f64>,
+}
+
 fn assess_run<'a>(
     experiment: &Experiment,
-    (setting, options, inputs): (&Setting<'_>, &EstimateOptions, &Inputs),
+    setting: &Setting<'_>,
+    with: With<'_>,
     run: &'a Run,
     (candidates, left_out): (Vec<&'a Position>, &[LeftOut]),
     findings: &mut Vec<Finding>,
 ) -> (RunAssessment, Material<'a>) {
     let bench = &experiment.bench;
+    let options = with.options;
     let k0 = setting.nominal_scale_m_s2_per_lsb;
     // The paper's adjustment uses [scale] for k0 alone.
     let candidates = match options.method {
@@ -370,13 +401,13 @@ fn assess_run<'a>(
     findings.extend(hygiene);
     let positions = usable.positions;
     findings.extend(judge::noise(&run.name, &positions, output, options.method));
-    let estimate = adjust(&run.name, &positions, setting, options, findings);
+    let estimate = adjust(&run.name, &positions, setting, with, findings);
     if let Some(e) = &estimate {
         findings.extend(estimate_findings(experiment, k0, options, &run.name, e, contradicted));
     }
     let variances: Vec<f64> =
         positions.iter().filter_map(|p| p.readings.std()).map(|s| s * s).collect();
-    let effects = estimate.as_ref().and_then(|e| effects(e, &positions, setting, inputs, &[]));
+    let effects = estimate.as_ref().and_then(|e| run_effects(e, &positions, setting, with));
     let material = Material {
         used: outliers::numbered(&numbered, &positions),
         left_out: omitted,
@@ -399,6 +430,22 @@ fn assess_run<'a>(
         reading_std_lsb: crate::stats::mean(&variances).map(f64::sqrt),
     };
     (assessed, material)
+}
+
+/// Systematic errors on a run's parameters; fitted terms take the place of what they stand for.
+fn run_effects(
+    estimate: &Estimate,
+    positions: &[&Position],
+    setting: &Setting<'_>,
+    with: With<'_>,
+) -> Option<Vec<SystematicEffect>> {
+    let sites = Sites::of(estimate, positions, setting, with.inputs.temperature_spread_k)?;
+    let fitted = estimate.terms.iter().filter_map(|t| {
+        let replaces = terms::replaced(t.term);
+        let lsb = pattern(replaces?, &sites, setting)?;
+        Some(ExtraColumn { lsb, replaces })
+    });
+    effects(estimate, positions, setting, with.inputs, &fitted.collect::<Vec<_>>())
 }
 
 /// What a run's estimate says. Values from data that are known to be wrong (`contradicted`) are not held against what
@@ -432,13 +479,15 @@ fn adjust(
     run: &str,
     positions: &[&Position],
     setting: &Setting<'_>,
-    options: &EstimateOptions,
+    with: With<'_>,
     findings: &mut Vec<Finding>,
 ) -> Option<Estimate> {
+    let options = with.options;
     if positions.is_empty() {
         return None;
     }
-    let error = match estimate(positions, setting, options) {
+    let estimated = estimate_with_terms(positions, setting, options, with.set, with.reference_degc);
+    let error = match estimated {
         Ok(e) => return Some(e),
         Err(error) => error,
     };

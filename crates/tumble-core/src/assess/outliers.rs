@@ -6,7 +6,9 @@ mod study;
 mod words;
 
 use super::{AssessError, PooledParameter, RunAssessment};
-use crate::estimate::{Estimate, EstimateOptions, Parameter, Setting, estimate};
+use crate::estimate::{
+    Estimate, EstimateOptions, Parameter, Setting, TermSet, estimate_with_terms,
+};
 use crate::judge::{Belonging, limits};
 use crate::{Experiment, Finding, FindingKind, Position, Run};
 use study::Study;
@@ -231,17 +233,28 @@ pub(super) fn all_there(experiment: &Experiment, left_out: &[LeftOut]) -> Result
     Ok(())
 }
 
+/// How the runs were fitted: options and the terms that entered.
+#[derive(Clone, Copy)]
+pub(super) struct Fitted<'a> {
+    pub options: &'a EstimateOptions,
+    pub set: TermSet,
+    pub reference_degc: Option<f64>,
+}
+
 /// Positions that do not belong or were left out, with what they do to the results.
 pub(super) fn judge(
     materials: &[Material<'_>],
     runs: &[RunAssessment],
     pooled: &[PooledParameter],
-    (setting, options): (&Setting<'_>, &EstimateOptions),
+    (setting, fitted): (&Setting<'_>, Fitted<'_>),
     findings: &mut Vec<Finding>,
 ) -> Outliers {
+    let Fitted { options, set, reference_degc } = fitted;
     let g = &setting.bench.gravity;
     let again = Again {
-        fit: &|positions| estimate(positions, setting, options).ok(),
+        fit: &|positions| {
+            estimate_with_terms(positions, setting, options, set, reference_degc).ok()
+        },
         pool: &|runs| super::budget::pooled(runs, options.level),
         level: options.level,
         least_sd_lsb: limits::LEAST_SCATTER_RAD * g.value_m_s2 / setting.nominal_scale_m_s2_per_lsb,

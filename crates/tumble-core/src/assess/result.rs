@@ -1,6 +1,7 @@
 //! Coefficients for use, and the budget of what scatter does not show.
 
-use super::{PooledRuns, RunAssessment};
+use super::terms::compensation_terms;
+use super::{CompensationTerms, PooledRuns, RunAssessment, Terms};
 use crate::estimate::Parameter;
 use crate::linalg::Matrix;
 use crate::{Quantizer, QuantizerOffset};
@@ -24,7 +25,9 @@ pub struct CompensationResult {
     pub parameter_covariance: Option<Matrix>,
     /// Standard deviation of a single reading, LSB: noise and quantization within dwells.
     pub reading_std_lsb: Option<f64>,
-    /// A worked number: code and what it means.
+    /// Further terms; absent without any.
+    pub terms: Option<CompensationTerms>,
+    /// A worked number: code and what it means, at the reference temperature.
     pub example: (i32, f64),
 }
 
@@ -38,8 +41,8 @@ pub fn compensation_result(
     together: &PooledRuns,
     whole: &Matrix,
     runs: &[RunAssessment],
-    quantizer: Quantizer,
-    nominal_scale_m_s2_per_lsb: f64,
+    (quantizer, nominal_scale_m_s2_per_lsb): (Quantizer, f64),
+    terms: &Terms,
 ) -> Option<CompensationResult> {
     let find = |parameter| {
         let mut all = together.parameters.iter().filter(|p| p.parameter == parameter);
@@ -55,7 +58,15 @@ pub fn compensation_result(
     let valid_range_lsb = (means().reduce(f64::min)?, means().reduce(f64::max)?);
     let offset = quantizer.offset();
     let code = (0.5 * valid_range_lsb.1.abs().max(valid_range_lsb.0.abs())).round();
-    let acceleration = scale_factor_m_s2_per_lsb * (code + offset.lsb(code)) - bias.value;
+    let linear = |n: f64| scale_factor_m_s2_per_lsb * (n + offset.lsb(n)) - bias.value;
+    let range = (linear(valid_range_lsb.0), linear(valid_range_lsb.1));
+    let recorded = runs.iter().flat_map(|r| r.temperatures_degc.iter().flatten().copied());
+    let temperatures = recorded.fold(None, |r: Option<(f64, f64)>, t| {
+        Some(r.map_or((t, t), |(low, high)| (low.min(t), high.max(t))))
+    });
+    let terms = compensation_terms(terms, &together.parameters, runs, k, range, temperatures);
+    let nonlinearity = terms.as_ref().map(CompensationTerms::nonlinearity).unwrap_or_default();
+    let acceleration = nonlinearity.undo_m_s2(linear(code), 0.0);
     let variances: Vec<f64> =
         runs.iter().filter_map(|r| r.reading_std_lsb).map(|s| s * s).collect();
     Some(CompensationResult {
@@ -64,9 +75,17 @@ pub fn compensation_result(
         bias_m_s2: bias.value,
         quantizer_offset: offset,
         valid_range_lsb,
-        covariance: whole.propagated(&to_use),
+        // Consistent with that of the terms, where there are any.
+        covariance: terms.as_ref().map_or_else(
+            || whole.propagated(&to_use),
+            |t| {
+                let c = &t.covariance;
+                Matrix::from_rows([[c[(0, 0)], c[(0, 1)]], [c[(1, 0)], c[(1, 1)]]])
+            },
+        ),
         parameter_covariance: one_mounting.then(|| whole.clone()),
         reading_std_lsb: crate::stats::mean(&variances).map(f64::sqrt),
+        terms,
         example: (code as i32, acceleration),
     })
 }

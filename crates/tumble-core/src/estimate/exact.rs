@@ -1,6 +1,6 @@
 //! The exact linear form: right for any size of error.
 
-use super::paper::{Fit, ToParameters, WeightedRow, spread};
+use super::paper::{Fit, MOST_TERMS, ToParameters, WeightedRow, spread};
 use super::types::{AgainstStated, EstimateError, Residual};
 use super::{Equation, Setting, select};
 use crate::Seat;
@@ -92,6 +92,7 @@ pub(super) fn fit(
             sd_lsb: total_variance(e, unknowns, scatter).sqrt(),
             residual: y - dot(row, unknowns),
             is_bound: false,
+            further: [0.0; MOST_TERMS],
         })
         .collect();
     let residual_std_lsb = redundant.then(|| {
@@ -112,6 +113,7 @@ pub(super) fn fit(
         weighted_rows,
         to_parameters,
         scatter: None,
+        sized_by_residuals: false,
     })
 }
 

@@ -5,22 +5,27 @@
 mod design;
 mod equations;
 mod exact;
+mod further;
 mod likelihood;
 mod paper;
 mod sequential;
+mod terms;
 mod types;
 
-pub use design::{Prediction, predict};
+pub use design::{Prediction, predict, predict_with_terms};
 pub use equations::{Equation, equations};
 pub use paper::{ToParameters, WeightedRow};
 pub use sequential::{SequentialEstimate, Stabilization};
+pub use terms::{Term, TermChoice, TermSet, added_m_s2};
 pub use types::{
     AgainstStated, Estimate, EstimateError, EstimateOptions, Method, Parameter, ProfileIntervals,
-    Ranged, Residual, Scatter, Split, Weights,
+    Ranged, Residual, Scatter, Split, TermEstimate, Weights,
 };
 
 use crate::linalg::{RANK_CONDITION_LIMIT, Triangular};
 use crate::{Bench, ConverterEnds, Position, Quantizer};
+
+use paper::Fit;
 
 /// What every run of an experiment shares.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,15 +63,68 @@ pub fn estimate(
     setting: &Setting<'_>,
     options: &EstimateOptions,
 ) -> Result<Estimate, EstimateError> {
+    let temperatures: Vec<f64> = positions.iter().filter_map(|p| p.temperature_degc).collect();
+    estimate_with_terms(
+        positions,
+        setting,
+        options,
+        options.terms.named(),
+        crate::stats::mean(&temperatures),
+    )
+}
+
+/// [`estimate`] with further terms, for one run of several that share the reference temperature `T̄`.
+///
+/// Terms that the positions cannot tell from the parameters at all, and those on temperature where one was not
+/// recorded, are left out: what was entered stands in [`Estimate::terms`]. [`Method::Paper`] enters none.
+///
+/// **Model** as in [`Term`]; the terms are part of the model, so residuals and everything after them are those that are
+/// left.
+///
+/// **Uncertainty** of the joint fit, as [`Estimate::full_covariance`] says.
+///
+/// **Errors** [`EstimateError`].
+///
+/// **Source** method section 8 (end); IEEE Std 1293.
+pub fn estimate_with_terms(
+    positions: &[&Position],
+    setting: &Setting<'_>,
+    options: &EstimateOptions,
+    terms: TermSet,
+    reference_degc: Option<f64>,
+) -> Result<Estimate, EstimateError> {
     let identifiability = Identifiability::of(positions, setting);
-    let eqs = || equations(positions, setting, options.weights);
     // Without redundancy there is no likelihood of the scatter: what is identifiable is solved for.
     let redundant = identifiability.full_rank() && positions.len() > 3;
-    let fit = match options.method {
-        Method::Paper => paper::fit(&eqs(), setting, identifiability.columns),
-        Method::Likelihood if redundant => likelihood::fit(positions, setting, options)?,
-        Method::Exact | Method::Likelihood => exact::fit(&eqs(), setting, identifiability.columns)?,
+    let base = |offsets_lsb: &[f64]| -> Result<Fit, EstimateError> {
+        let eqs = || {
+            let mut eqs = equations(positions, setting, options.weights);
+            eqs.iter_mut().zip(offsets_lsb).for_each(|(e, added)| e.analogue_lsb -= added);
+            eqs
+        };
+        Ok(match options.method {
+            Method::Paper => paper::fit(&eqs(), setting, identifiability.columns),
+            Method::Likelihood if redundant => {
+                likelihood::fit(positions, setting, options, offsets_lsb)?
+            }
+            Method::Exact | Method::Likelihood => {
+                exact::fit(&eqs(), setting, identifiability.columns)?
+            }
+        })
     };
+    let set = match options.method {
+        Method::Exact | Method::Likelihood if redundant => further::supported(terms, positions),
+        _ => TermSet::EMPTY,
+    };
+    let extended = match (set.is_empty(), reference_degc.unwrap_or(0.0)) {
+        (true, _) => None,
+        (false, t) => further::fit(set, t, positions, setting, options.method, base)?,
+    };
+    let (fit, entered, full_covariance) = match extended {
+        Some(e) => (e.fit, e.terms, e.covariance),
+        None => (base(&[])?, Vec::new(), None),
+    };
+    let on_temperature = entered.iter().any(|t| t.term.needs_temperature());
     let stabilization = if identifiability.full_rank() {
         sequential::stabilization(&fit, options.level)
     } else {
@@ -85,6 +143,9 @@ pub fn estimate(
         profile: fit.profile,
         scatter: fit.scatter,
         condition: identifiability.condition,
+        reference_temperature_degc: reference_degc.filter(|_| on_temperature),
+        terms: entered,
+        full_covariance,
         plan_uncertainty: fit
             .residual_std_lsb
             .zip(identifiability.plan_uncertainty)

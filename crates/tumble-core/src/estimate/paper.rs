@@ -5,6 +5,9 @@ use super::{Equation, Setting, select};
 use crate::linalg::{Matrix, Triangular};
 use crate::{Position, Seat};
 
+/// Most further terms of a model.
+pub(super) const MOST_TERMS: usize = super::terms::Term::ALL.len();
+
 /// An equation of the adjustment over its standard deviation, so that the covariance of the unknowns is `(XᵀX)⁻¹`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WeightedRow {
@@ -19,6 +22,16 @@ pub struct WeightedRow {
     /// Whether the dwell's codes only bound its level: such a residual is zero inside of the bounds, and says nothing
     /// about how much positions scatter.
     pub is_bound: bool,
+    /// Columns of the further terms that were entered, over the standard deviation; zero beyond their number.
+    pub further: [f64; MOST_TERMS],
+}
+
+impl WeightedRow {
+    /// Number of further columns that the rows of a run have.
+    #[must_use]
+    pub fn further_columns(rows: &[Self]) -> usize {
+        (0..MOST_TERMS).rfind(|i| rows.iter().any(|r| r.further[*i] != 0.0)).map_or(0, |i| i + 1)
+    }
 }
 
 /// A fitted run, before it is judged.
@@ -40,6 +53,8 @@ pub(super) struct Fit {
     pub to_parameters: ToParameters,
     /// Noise and scatter, where the estimator tells them apart.
     pub scatter: Option<Scatter>,
+    /// Whether the residuals say how large each parameter's variance is, not the model of the scatter.
+    pub sized_by_residuals: bool,
 }
 
 /// From the unknowns of an adjustment to the parameters.
@@ -114,6 +129,7 @@ pub(super) fn fit(eqs: &[Equation], setting: &Setting<'_>, columns: [bool; 3]) -
             sd_lsb: sd / k0,
             residual: r.lsb * k0 / sd,
             is_bound: false,
+            further: [0.0; MOST_TERMS],
         })
         .collect();
     Fit {
@@ -128,6 +144,7 @@ pub(super) fn fit(eqs: &[Equation], setting: &Setting<'_>, columns: [bool; 3]) -
         weighted_rows,
         to_parameters: ToParameters::Identity,
         scatter: None,
+        sized_by_residuals: false,
     }
 }
 
@@ -137,4 +154,14 @@ pub(super) fn spread(fitted: &[f64], columns: [bool; 3]) -> [f64; 3] {
     let places = (0..3).filter(|i| columns[*i]);
     places.zip(fitted).for_each(|(i, v)| out[i] = *v);
     out
+}
+
+impl ToParameters {
+    /// `g` of the exact form, m/s²; one where the unknowns are the parameters.
+    pub(super) fn gravity_m_s2(self) -> f64 {
+        match self {
+            Self::Identity => 1.0,
+            Self::Exact { gravity_m_s2, .. } => gravity_m_s2,
+        }
+    }
 }

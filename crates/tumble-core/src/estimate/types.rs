@@ -1,5 +1,6 @@
 //! What goes into an estimation and what comes out.
 
+use super::terms::{Term, TermChoice};
 use super::{Stabilization, ToParameters, WeightedRow};
 use crate::linalg::Matrix;
 use crate::stats::student_factor;
@@ -39,16 +40,21 @@ pub struct EstimateOptions {
     pub level: f64,
     /// Significant digits of the uncertainty that Monte Carlo is to settle (JCGM 101, 7.9.2), 1 or 2; zero: no draws.
     pub monte_carlo_digits: u32,
+    /// Further terms of the model. [`Method::Paper`] has none. One run alone takes [`TermChoice::Auto`] for none: the
+    /// choice needs all runs.
+    pub terms: TermChoice,
 }
 
 impl Default for EstimateOptions {
-    /// Likelihood, both kinds of scatter, 95 % (JCGM 100: the level for expanded uncertainties).
+    /// Likelihood, both kinds of scatter, 95 % (JCGM 100: the level for expanded uncertainties), terms as the data ask
+    /// for them.
     fn default() -> Self {
         Self {
             method: Method::Likelihood,
             weights: Weights::Angle,
             level: 0.95,
             monte_carlo_digits: 2,
+            terms: TermChoice::Auto,
         }
     }
 }
@@ -214,6 +220,21 @@ pub struct Scatter {
     pub inflation: f64,
 }
 
+/// One further term's coefficient in one run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TermEstimate {
+    /// Which.
+    pub term: Term,
+    /// Coefficient in [`Term::unit`].
+    pub value: f64,
+    /// Its standard uncertainty; absent without redundancy.
+    pub standard_uncertainty: Option<f64>,
+    /// Effective degrees of freedom.
+    pub degrees_of_freedom: f64,
+    /// Largest magnitude over the positions of what the term adds, m/s².
+    pub peak_m_s2: f64,
+}
+
 /// The result of one run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Estimate {
@@ -221,7 +242,7 @@ pub struct Estimate {
     pub positions: usize,
     /// Different angles among them.
     pub distinct_angles: usize,
-    /// `n − p`.
+    /// `n − p`, further terms among the `p`.
     pub degrees_of_freedom: usize,
     /// Effective degrees of freedom of each parameter's standard uncertainty; `n − p` where all positions scatter alike.
     pub effective_dof: [f64; 3],
@@ -244,6 +265,12 @@ pub struct Estimate {
     pub profile: Option<ProfileIntervals>,
     /// Noise and scatter; only [`Method::Likelihood`] tells them apart.
     pub scatter: Option<Scatter>,
+    /// Further terms that were entered, in order.
+    pub terms: Vec<TermEstimate>,
+    /// Covariance of (bias, misalignment, scale error, further terms); absent without further terms.
+    pub full_covariance: Option<Matrix>,
+    /// `T̄` of the terms on temperature, °C.
+    pub reference_temperature_degc: Option<f64>,
     /// How the estimate settled as positions were added.
     pub stabilization: Stabilization,
     /// The equations of the adjustment, over their standard deviations; for tests of further terms.

@@ -8,6 +8,7 @@ mod outlier;
 mod plan;
 mod record;
 mod runs;
+mod terms;
 mod values;
 
 use crate::assess::for_want_of_runs;
@@ -111,6 +112,9 @@ impl FindingKind {
             K::SettlingLeftOut => record::settling_left_out(),
             K::DwellsCutOut => record::dwells_cut_out(),
             K::AngleOutsideRange => bench::angle_outside_range(),
+            K::TermEntered => terms::term_entered(),
+            K::TermNotIdentifiable => terms::term_not_identifiable(),
+            K::TermNeedsTemperature => terms::term_needs_temperature(),
             K::LowUncertaintyRatio => conformity::low_uncertainty_ratio(),
             K::NothingCouldPass => conformity::nothing_could_pass(),
         }

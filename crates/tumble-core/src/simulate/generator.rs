@@ -54,8 +54,12 @@ impl Truth {
     }
 
     /// Noiseless analogue value, LSB, for an acceleration along the axis and a bias.
-    fn analogue_lsb(&self, a: f64, bias_m_s2: f64) -> f64 {
-        let nonlinear = a + self.k2_per_m_s2 * a * a + self.k3_per_m2_s4 * a * a * a;
+    fn analogue_lsb(&self, a: f64, bias_m_s2: f64, kelvin: f64) -> f64 {
+        let nonlinear = a
+            + self.k2_per_m_s2 * a * a
+            + self.k3_per_m2_s4 * a * a * a
+            + 0.5 * self.scale_sign * a.abs()
+            + self.scale_per_k * kelvin * a;
         (nonlinear + bias_m_s2) / self.actual_scale_m_s2_per_lsb()
     }
 }
@@ -114,8 +118,9 @@ pub fn simulate_run(truth: &Truth, run: u32) -> SimulatedRun {
         };
         let temperature_degc =
             truth.temperature_degc.map(|(from, to)| from + (to - from) * i as f64 / steps);
-        let thermal = temperature_degc.map_or(0.0, |t| truth.bias_per_k_m_s2 * (t - middle));
-        let level = truth.analogue_lsb(acceleration, bias_m_s2 + thermal);
+        let kelvin = temperature_degc.map_or(0.0, |t| t - middle);
+        let bias = bias_m_s2 + truth.bias_per_k_m_s2 * kelvin;
+        let level = truth.analogue_lsb(acceleration, bias, kelvin);
         let analogue_lsb = (0..samples)
             .map(|_| {
                 if per_sample_walk > 0.0 {

@@ -45,6 +45,8 @@ impl Preset {
             random_walk_m_s2_rts: 0.0,
             turn_on_m_s2: 0.0,
             bias_per_k_m_s2: 0.0,
+            scale_sign: 0.0,
+            scale_per_k: 0.0,
             temperature_degc: None,
             setting_scatter: Angle::from_arcmin(0.55),
             dial_zero: Angle::from_rad(0.0),

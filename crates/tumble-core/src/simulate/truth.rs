@@ -6,7 +6,8 @@ use crate::{Angle, ConverterEnds, Quantizer};
 ///
 /// **Model** `φ* = φ (1 + ε_dial) + zero + e sin(φ + phase) + scatter + Δφ`,
 /// `a = g (cos ψ cos η sin φ* + sin ψ sin η)`, upright `a = ±g cos(lean)`,
-/// `x = (a + K2 a² + K3 a³ + Δa + turn-on + c_T (T − T̄) + walk + noise) / (k0 (1 + δk))`, code `= Q[x]`.
+/// `x = (a + K2 a² + K3 a³ + ½ K1′ |a| + s_T (T − T̄) a + Δa + turn-on + c_T (T − T̄) + walk + noise) / (k0 (1 + δk))`,
+/// code `= Q[x]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Truth {
     /// `g`, m/s².
@@ -23,6 +24,8 @@ pub struct Truth {
     pub k2_per_m_s2: f64,
     /// K3, (m/s²)/(m/s²)³.
     pub k3_per_m2_s4: f64,
+    /// Scale factor for positive minus that for negative accelerations, relative.
+    pub scale_sign: f64,
     /// White noise of a single sample, m/s².
     pub noise_m_s2: f64,
     /// Random walk of the bias within a run, m/s² per √s.
@@ -31,6 +34,8 @@ pub struct Truth {
     pub turn_on_m_s2: f64,
     /// Bias per kelvin, m/s²/K.
     pub bias_per_k_m_s2: f64,
+    /// Scale factor per kelvin, relative.
+    pub scale_per_k: f64,
     /// Temperature at the start and the end of a run; recorded when given.
     pub temperature_degc: Option<(f64, f64)>,
     /// Random error of setting an angle, standard.
@@ -163,6 +168,8 @@ impl Truth {
             ("misalignment", self.misalignment.rad()),
             ("K2", self.k2_per_m_s2),
             ("K3", self.k3_per_m2_s4),
+            ("scale by sign", self.scale_sign),
+            ("scale per kelvin", self.scale_per_k),
             ("dial zero", self.dial_zero.rad()),
             ("dial scale", self.dial_scale),
             ("eccentricity", self.eccentricity.rad()),

@@ -14,6 +14,7 @@ const OPTIONS: EstimateOptions = EstimateOptions {
     weights: Weights::Equal,
     level: 0.95,
     monte_carlo_digits: 0,
+    terms: tumble_core::estimate::TermChoice::Named(tumble_core::estimate::TermSet::EMPTY),
 };
 
 fn with_pair(truth: &Truth) -> Experiment {

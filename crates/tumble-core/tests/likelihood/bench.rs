@@ -3,7 +3,7 @@
 use rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal, StandardUniform};
 use rand_pcg::Pcg64Mcg;
-use tumble_core::estimate::Setting;
+use tumble_core::estimate::{Setting, Term};
 use tumble_core::{
     ARCMIN_RAD, Angle, Bench, BlockSums, Code, CodeHistogram, ConverterEnds, Gravity,
     GravitySource, Position, Quantizer, Readings, Record, Seat,
@@ -37,6 +37,10 @@ pub struct Truth {
     pub upright_arcmin: Option<f64>,
     /// What the operator states as `σφ`.
     pub stated_arcmin: Option<f64>,
+    /// Further terms, SI.
+    pub further: Vec<(Term, f64)>,
+    /// Temperatures at the first and the last dwell, °C, recorded.
+    pub temperature_degc: Option<(f64, f64)>,
 }
 
 /// One run as it was recorded, and what no recorder knows.
@@ -64,6 +68,8 @@ impl Truth {
             samples: 1500,
             upright_arcmin: None,
             stated_arcmin: None,
+            further: Vec::new(),
+            temperature_degc: None,
         }
     }
 
@@ -131,7 +137,8 @@ impl Truth {
         let mut normal = move || -> f64 { StandardNormal.sample(&mut rng) };
         let upright = self.upright_arcmin.map(|_| [90.0, -90.0]).into_iter().flatten();
         let mut out = SimulatedRun { positions: Vec::new(), analogue_lsb: Vec::new() };
-        for deg in upright.chain(self.angles_deg.iter().copied()) {
+        let plan: Vec<f64> = upright.chain(self.angles_deg.iter().copied()).collect();
+        for (j, deg) in plan.iter().copied().enumerate() {
             let angle = Angle::from_deg(deg);
             let seat = match deg {
                 90.0 => Seat::Up,
@@ -144,14 +151,24 @@ impl Truth {
             };
             let misalignment = if seat == Seat::Table { self.misalignment_rad } else { 0.0 };
             let true_rad = angle.rad() + misalignment + off_arcmin * ARCMIN_RAD * normal();
-            let level = self.full_scale() * true_rad.sin() + self.bias_lsb + self.level * normal();
+            let share = j as f64 / (plan.len() - 1) as f64;
+            let temperature_degc =
+                self.temperature_degc.map(|(from, to)| from + (to - from) * share);
+            let kelvin =
+                self.temperature_degc.map_or(0.0, |(from, to)| (to - from) * (share - 0.5));
+            let a = GRAVITY * true_rad.sin();
+            let added: f64 = self.further.iter().map(|(t, c)| c * t.basis(a, kelvin)).sum();
+            let level = self.full_scale() * true_rad.sin()
+                + added / self.scale()
+                + self.bias_lsb
+                + self.level * normal();
             let (readings, mean) = self.dwell(level, &mut normal);
             out.analogue_lsb.push(mean);
             out.positions.push(Position {
                 angle,
                 seat,
                 readings,
-                temperature_degc: None,
+                temperature_degc,
                 place: String::new(),
                 record: Record::default(),
             });

@@ -23,7 +23,7 @@ fn try_fit(
     estimate(
         &refs,
         &truth.setting(&bench),
-        &EstimateOptions { method, weights, level: 0.95, ..EstimateOptions::default() },
+        &EstimateOptions { method, weights, ..EstimateOptions::default() },
     )
 }
 

@@ -18,15 +18,25 @@ pub struct Reading {
     pub text: String,
     /// The reading: a code, or a real number where the passport's converter does not quantize.
     pub value: f64,
+    /// Temperature, where the stream has a column `temperature_degc`.
+    pub temperature_degc: Option<f64>,
 }
 
 /// Alias of what a stream can fail with.
 pub type CodeStreamError = ReadError;
 
-/// Codes from CSV text: a header with `code` (or `output`) and perhaps `t_s`, or bare numbers, one a line.
+/// Places of what is read.
+struct Header {
+    columns: Columns,
+    reading: usize,
+    time: Option<usize>,
+    temperature: Option<usize>,
+}
+
+/// Codes from CSV text: a header with `code` (or `output`) and perhaps `t_s` and `temperature_degc`, or bare numbers, one a line.
 pub struct CodeStream<R> {
     lines: Lines<R>,
-    header: Option<(Columns, usize, Option<usize>)>,
+    header: Option<Header>,
     /// A first line that was no header.
     first: Option<(u64, Vec<u8>)>,
     whole_codes: bool,
@@ -61,14 +71,21 @@ impl<R: Read> CodeStream<R> {
             });
         };
         let time = columns.get("t_s");
-        stream.header = Some((columns, reading, time));
+        let temperature = columns.get("temperature_degc");
+        stream.header = Some(Header { columns, reading, time, temperature });
         Ok(stream)
     }
 
     /// Whether readings come with a time.
     #[must_use]
     pub fn has_time(&self) -> bool {
-        matches!(self.header, Some((_, _, Some(_))))
+        self.header.as_ref().is_some_and(|h| h.time.is_some())
+    }
+
+    /// Whether readings come with a temperature.
+    #[must_use]
+    pub fn has_temperature(&self) -> bool {
+        self.header.as_ref().is_some_and(|h| h.temperature.is_some())
     }
 
     /// The next reading.
@@ -79,7 +96,7 @@ impl<R: Read> CodeStream<R> {
         }
         let whole = self.whole_codes;
         let Some((number, line)) = self.lines.next_data()? else { return Ok(None) };
-        let Some((columns, reading, time)) = &self.header else {
+        let Some(Header { columns, reading, time, temperature }) = &self.header else {
             return bare(&file, number, line, whole).map(Some);
         };
         let fields = self.buffer.split(line, columns.delimiter);
@@ -101,7 +118,12 @@ impl<R: Read> CodeStream<R> {
             }
             None => None,
         };
-        Ok(Some(Reading { time, text: String::from_utf8_lossy(text).replace(',', "."), value }))
+        let temperature_degc = match temperature {
+            Some(i) => Some(row.real(*i, "a temperature in °C")?),
+            None => None,
+        };
+        let text = String::from_utf8_lossy(text).replace(',', ".");
+        Ok(Some(Reading { time, text, value, temperature_degc }))
     }
 }
 
@@ -111,7 +133,8 @@ fn bare(file: &str, number: u64, line: &[u8], whole: bool) -> Result<Reading, Re
         if whole { integer(text).map(f64::from) } else { real(text, DecimalSign::CommaOrPoint) };
     match value {
         Some(value) => {
-            Ok(Reading { time: None, text: String::from_utf8_lossy(text).replace(',', "."), value })
+            let text = String::from_utf8_lossy(text).replace(',', ".");
+            Ok(Reading { time: None, text, value, temperature_degc: None })
         }
         None => Err(ReadError {
             place: Place::line(file, number),

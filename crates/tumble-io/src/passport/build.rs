@@ -12,6 +12,7 @@ use tumble_core::{
 };
 
 use super::outliers;
+use super::terms::{compensation_terms, run_terms, square, terms, terms_option};
 use super::types as wire;
 use crate::folder::ExperimentFolder;
 
@@ -84,6 +85,7 @@ pub fn build(
             quadratic: s.quadratic.map(term),
             cubic: s.cubic.map(term),
         }),
+        terms: terms(assessment, options.level),
         influence: wire::Influence {
             temperature: assessment.influence.temperature.as_ref().map(influence),
             signal_level: assessment.influence.signal_level.as_ref().map(influence),
@@ -111,6 +113,7 @@ pub fn build(
             },
             level: options.level,
             monte_carlo_digits: options.monte_carlo_digits,
+            terms: Some(terms_option(options)),
             targets: wire::Targets {
                 bias_m_s2: experiment.targets.bias_m_s2,
                 misalignment_rad: experiment.targets.misalignment_rad,
@@ -319,6 +322,7 @@ fn compensation(a: &Assessment) -> Option<wire::Compensation> {
         valid_range_lsb: [c.valid_range_lsb.0, c.valid_range_lsb.1],
         covariance: core::array::from_fn(|i| core::array::from_fn(|j| c.covariance[(i, j)])),
         reading_std_lsb: c.reading_std_lsb,
+        terms: c.terms.as_ref().map(compensation_terms),
         example: wire::Example { code: c.example.0, acceleration_m_s2: c.example.1 },
     })
 }
@@ -349,6 +353,8 @@ fn run(
             scale_error: estimate(Parameter::ScaleError),
         },
         covariance: e.and_then(|e| e.covariance.as_ref()).map(three),
+        terms: e.map(run_terms).unwrap_or_default(),
+        full_covariance: e.and_then(|e| e.full_covariance.as_ref()).map(square).unwrap_or_default(),
         residual_std_lsb: e.and_then(|e| e.residual_std_lsb),
         reading_std_lsb: r.reading_std_lsb,
         condition_number: e.and_then(|e| finite(e.condition)),

@@ -7,6 +7,7 @@
 mod build;
 mod conformity;
 mod outliers;
+mod terms;
 mod types;
 
 use std::io::Read as _;

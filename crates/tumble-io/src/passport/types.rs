@@ -32,6 +32,8 @@ pub struct Passport {
     pub error_level_lsb: Option<ErrorLevel>,
     #[serde(default)]
     pub structure: Option<Structure>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub terms: Vec<Term>,
     #[serde(default)]
     pub influence: Influence,
     /// Positions that do not belong, and those left out on request.
@@ -295,7 +297,73 @@ pub struct Compensation {
     /// Standard deviation of a single reading within a dwell, LSB.
     #[serde(default)]
     pub reading_std_lsb: Option<f64>,
+    /// Further terms of the model; absent without any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub terms: Option<CompensationTerms>,
     pub example: Example,
+}
+
+/// Further terms that a compensation must undo.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CompensationTerms {
+    pub coefficients: Vec<Coefficient>,
+    /// Absent without terms on temperature.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reference_temperature_degc: Option<f64>,
+    /// Of (scale factor, bias, coefficients in order).
+    pub covariance: Vec<Vec<f64>>,
+    /// What a program that ignores the terms is wrong by, at most.
+    pub terms_peak_m_s2: f64,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Coefficient {
+    pub name: String,
+    pub value: f64,
+    pub unit: String,
+}
+
+/// A further term that was tried or named.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Term {
+    pub name: String,
+    pub entered: bool,
+    /// `null`: the plan cannot tell the term from the parameters, or temperatures are missing.
+    pub value: Option<f64>,
+    pub unit: String,
+    pub standard_uncertainty: Option<f64>,
+    pub degrees_of_freedom: Option<f64>,
+    pub expanded_uncertainty: Option<f64>,
+    pub interval: Option<[f64; 2]>,
+    pub p_value: Option<f64>,
+    /// Of Schwarz' criterion: without the term minus with it.
+    pub criterion_difference: Option<f64>,
+    pub identifiable: bool,
+    pub bound: Option<f64>,
+    /// Largest size with which it enters by itself.
+    pub plausible: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub obstacle: Option<String>,
+    pub in_usual_unit: UsualUnit,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct UsualUnit {
+    pub unit: String,
+    pub value: Option<f64>,
+    pub expanded_uncertainty: Option<f64>,
+    pub bound: Option<f64>,
+    pub plausible: f64,
+}
+
+/// A further term in one run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RunTerm {
+    pub name: String,
+    pub value: f64,
+    pub unit: String,
+    pub standard_uncertainty: Option<f64>,
+    pub degrees_of_freedom: Option<f64>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -329,6 +397,12 @@ pub struct Run {
     pub estimates: RunEstimates,
     /// Statistical, in the order of `parameters`.
     pub covariance: Option<[[f64; 3]; 3]>,
+    /// Further terms, where any were entered.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub terms: Vec<RunTerm>,
+    /// Of (parameters, further terms).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub full_covariance: Vec<Vec<f64>>,
     pub residual_std_lsb: Option<f64>,
     pub reading_std_lsb: Option<f64>,
     /// `null`: infinite, a parameter is not determined.
@@ -475,6 +549,9 @@ pub struct Options {
     /// Digits of the uncertainty that the draws were to settle; zero: none were made.
     #[serde(default)]
     pub monte_carlo_digits: u32,
+    /// `auto`, `none`, or names.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub terms: Option<String>,
     pub targets: Targets,
     /// Positions that were left out on request.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

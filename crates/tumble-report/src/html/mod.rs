@@ -12,6 +12,7 @@ mod provenance;
 mod result;
 mod scatter;
 mod style;
+mod terms;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use tumble_io::passport::Passport;
@@ -65,6 +66,7 @@ pub fn html(passport: &Passport) -> String {
                     (apply::apply(&page))
                     (evidence::figures(&page))
                     (evidence::error_level(&page))
+                    (terms::terms(&page))
                     (evidence::influence(&page))
                     (evidence::budget(&page))
                     (evidence::runs(&page))

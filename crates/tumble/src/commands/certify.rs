@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use tumble_core::assess::LeftOut;
-use tumble_core::estimate::{EstimateOptions, Method, Weights};
+use tumble_core::estimate::{EstimateOptions, Method, TermChoice, TermSet, Weights};
 use tumble_io::passport::Passport;
 use tumble_io::{
     Catalogue, CertifyError, CertifyOptions, Existing, OutputError, OutputFolder, Written,
@@ -85,12 +85,27 @@ fn options(args: &CertifyArgs) -> Result<CertifyOptions, (String, Exit)> {
         (_, Some(WeightsArg::Stated)) => Weights::Stated,
         (_, Some(WeightsArg::Angle) | None) => Weights::Angle,
     };
+    let terms = match (args.method, args.terms) {
+        (MethodArg::Paper, Some(TermChoice::Named(set))) if !set.is_empty() => {
+            return Err(usage(
+                "--method paper has no further terms by definition; leave --terms out, or use another method",
+            ));
+        }
+        (MethodArg::Paper, Some(TermChoice::Auto)) => {
+            return Err(usage(
+                "--method paper has no further terms by definition; leave --terms out, or use another method",
+            ));
+        }
+        (MethodArg::Paper, _) => TermChoice::Named(TermSet::EMPTY),
+        (_, choice) => choice.unwrap_or_default(),
+    };
     Ok(CertifyOptions {
         estimate: EstimateOptions {
             method,
             weights,
             level: args.level,
             monte_carlo_digits: args.monte_carlo,
+            terms,
         },
         id: args.id.clone(),
         issued: args.issued.clone(),

@@ -30,7 +30,7 @@ pub(crate) fn run(args: &CompensateArgs) -> Exit {
         None => (Box::new(io::stdin().lock()), "standard input".into()),
     };
     let mut out = io::BufWriter::with_capacity(1 << 16, io::stdout().lock());
-    match stream(reader, &name, &compensator, &mut out) {
+    match stream(reader, &name, &compensator, args.temperature, &mut out) {
         Ok(counts) => {
             if !args.quiet {
                 counts.tell();
@@ -41,6 +41,14 @@ pub(crate) fn run(args: &CompensateArgs) -> Exit {
             // What was compensated before the bad line is right and stays.
             let _ = out.flush();
             complain(e);
+            Exit::Usage
+        }
+        Err(StreamError::NoTemperature) => {
+            complain(format!(
+                "{}: the passport has terms on temperature, and the readings have none; give a column \
+                 `temperature_degc`, or one temperature for all with --temperature 21.5",
+                args.passport.display()
+            ));
             Exit::Usage
         }
         Err(StreamError::Write(e)) if e.kind() == io::ErrorKind::BrokenPipe => Exit::Ok,
@@ -73,6 +81,7 @@ fn load(args: &CompensateArgs) -> Result<Compensator, (String, Exit)> {
 enum StreamError {
     Read(ReadError),
     Write(io::Error),
+    NoTemperature,
 }
 
 /// What is worth saying when the stream has ended.
@@ -104,11 +113,15 @@ fn stream(
     reader: impl Read,
     name: &str,
     compensator: &Compensator,
+    temperature_degc: Option<f64>,
     out: &mut impl Write,
 ) -> Result<Counts, StreamError> {
     let whole_codes = compensator.quantizer != Quantizer::None;
     let mut codes = CodeStream::new(reader, name, whole_codes).map_err(StreamError::Read)?;
     let timed = codes.has_time();
+    if compensator.needs_temperature() && !codes.has_temperature() && temperature_degc.is_none() {
+        return Err(StreamError::NoTemperature);
+    }
     let mut counts = Counts::default();
     let header = if timed { "t_s," } else { "" };
     let column = if whole_codes { "code" } else { "output" };
@@ -117,7 +130,11 @@ fn stream(
     while let Some(reading) = codes.next_reading().map_err(StreamError::Read)? {
         counts.readings += 1;
         let time = reading.time.map(|t| t + ",").unwrap_or_default();
-        match compensator.compensate(reading.value) {
+        let compensated = match reading.temperature_degc.or(temperature_degc) {
+            Some(t) => compensator.compensate_at(reading.value, t),
+            None => compensator.compensate(reading.value),
+        };
+        match compensated {
             Some(c) => {
                 counts.outside += u64::from(!c.inside_range);
                 writeln!(

@@ -78,6 +78,8 @@ fn truth(a: &SimulateArgs) -> Truth {
         noise_m_s2: a.noise.map_or(p.noise_m_s2, |n| n.m_s2(k0, rate_hz)),
         random_walk_m_s2_rts: a.random_walk.unwrap_or(p.random_walk_m_s2_rts),
         turn_on_m_s2: a.turn_on.map_or(p.turn_on_m_s2, |t| t.m_s2(k0)),
+        scale_sign: p.scale_sign,
+        scale_per_k: p.scale_per_k,
         bias_per_k_m_s2: a.bias_per_kelvin.map_or(p.bias_per_k_m_s2, |b| b.m_s2(k0)),
         temperature_degc: a.temperature.or(p.temperature_degc),
         setting_scatter: a.scatter.unwrap_or(p.setting_scatter),

@@ -37,7 +37,7 @@ use spread::{Reading, Spread};
 use super::Setting;
 use super::equations::equations;
 use super::exact;
-use super::paper::{Fit, ToParameters, WeightedRow};
+use super::paper::{Fit, MOST_TERMS, ToParameters, WeightedRow};
 use super::types::{EstimateError, EstimateOptions, ProfileIntervals, Residual, Weights};
 use crate::Position;
 use crate::linalg::dot3;
@@ -88,25 +88,28 @@ impl Adjusted {
             sd_lsb,
             residual: (offset - dot3(row, shift)) / sd_lsb,
             is_bound: matches!(self.dwells[j].evidence, Evidence::Curve(_)),
+            further: [0.0; MOST_TERMS],
         }
     }
 }
 
-/// Fits one run whose positions determine all three parameters, with redundancy.
+/// Fits one run whose positions determine all three parameters, with redundancy. `offsets_lsb`: what further terms add
+/// to the level of each position; empty without any.
 pub(super) fn fit(
     positions: &[&Position],
     setting: &Setting<'_>,
     options: &EstimateOptions,
+    offsets_lsb: &[f64],
 ) -> Result<Fit, EstimateError> {
     let g = setting.bench.gravity.value_m_s2;
     let k0 = setting.nominal_scale_m_s2_per_lsb;
     let to = ToParameters::Exact { gravity_m_s2: g, nominal_scale: k0 };
     let materials = Materials::of(positions, setting);
-    let mut reference = start(positions, setting)?;
+    let mut reference = start(positions, setting, offsets_lsb)?;
     let mut expansions = 0;
     let adjusted = loop {
         expansions += 1;
-        let a = adjust(reference, positions, setting, options, &materials)
+        let a = adjust(reference, positions, setting, options, (&materials, offsets_lsb))
             .ok_or(EstimateError::OnlyBounds)?;
         let reading = Reading { basis: &a.basis, reference, to };
         let next = reading.unknowns(a.solution.shift);
@@ -128,10 +131,19 @@ pub(super) fn fit(
 }
 
 /// Unknowns to expand about: unweighted least squares of the averages.
-fn start(positions: &[&Position], setting: &Setting<'_>) -> Result<[f64; 3], EstimateError> {
-    let averaged: Vec<&Position> =
-        positions.iter().copied().filter(|p| p.readings.censored(&setting.ends) == 0).collect();
-    let fit = exact::fit(&equations(&averaged, setting, Weights::Equal), setting, [true; 3])?;
+fn start(
+    positions: &[&Position],
+    setting: &Setting<'_>,
+    offsets_lsb: &[f64],
+) -> Result<[f64; 3], EstimateError> {
+    let whole = |j: &usize| positions[*j].readings.censored(&setting.ends) == 0;
+    let kept: Vec<usize> = (0..positions.len()).filter(whole).collect();
+    let averaged: Vec<&Position> = kept.iter().map(|j| positions[*j]).collect();
+    let mut eqs = equations(&averaged, setting, Weights::Equal);
+    for (e, j) in eqs.iter_mut().zip(&kept) {
+        e.analogue_lsb -= offsets_lsb.get(*j).copied().unwrap_or(0.0);
+    }
+    let fit = exact::fit(&eqs, setting, [true; 3])?;
     Ok(exact::unknowns(fit.values, setting))
 }
 
@@ -150,12 +162,13 @@ fn adjust(
     positions: &[&Position],
     setting: &Setting<'_>,
     options: &EstimateOptions,
-    materials: &Materials,
+    (materials, offsets_lsb): (&Materials, &[f64]),
 ) -> Option<Adjusted> {
     let stated = setting.bench.angle_uncertainty.map_or(0.0, |a| a.rad());
     let fixed = if options.weights == Weights::Stated { stated } else { 0.0 };
     let components = components(options.weights, stated);
-    let frame = Frame::about(reference, positions, setting, fixed);
+    let mut frame = Frame::about(reference, positions, setting, fixed);
+    frame.origins.iter_mut().zip(offsets_lsb).for_each(|(origin, added)| *origin += added);
     let basis = Basis::of(&frame.rows);
     let floor = smallest_variance(&frame);
     let dwells_at = |sigma: f64| -> Vec<Dwell> {
@@ -227,6 +240,7 @@ fn uncertainty(
     if let Some((u, dof)) = shown {
         spread.covariance = spread::with_deviations(&spread.covariance, u);
         spread.dof = dof;
+        spread.by_residuals = true;
     }
     if let Some(by_noise) = shift_by_noise(a, materials, reading) {
         let u: [f64; 3] =
@@ -317,5 +331,6 @@ fn present(
         weighted_rows,
         to_parameters: reading.to,
         scatter: Some(table::scatter(a, materials, unknowns, options.level)),
+        sized_by_residuals: spread.by_residuals,
     }
 }

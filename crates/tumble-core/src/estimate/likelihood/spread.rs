@@ -23,6 +23,8 @@ pub(super) struct Spread {
     pub dof: [f64; 3],
     /// Intervals from the profile likelihood at the level asked for, where they are not `value ± t u`.
     pub profile: Option<[[f64; 2]; 3]>,
+    /// Whether the residuals gave deviations and degrees of freedom.
+    pub by_residuals: bool,
 }
 
 /// From shifts in the basis to parameters.
@@ -97,6 +99,7 @@ pub(super) fn over_surface(nodes: &[Node], reading: &Reading<'_>) -> Spread {
         covariance: with_deviations(&mean_covariance, u),
         dof,
         profile: None,
+        by_residuals: false,
     }
 }
 
