@@ -137,12 +137,15 @@ pub fn assess(
     let reference_degc = terms::reference_temperature(experiment);
     let choosing = terms::Choosing { experiment, setting: &setting, options, reference_degc };
     let ((runs, of_runs), terms) = choosing.choose(|set| {
-        let (mut runs, mut findings) = (Vec::new(), Vec::new());
+        // What was found before says how a run that does not come to rest is to be taken.
+        let mut findings = findings.clone();
+        let before = findings.len();
+        let mut runs = Vec::new();
         let with = With { options, set, reference_degc };
         for (run, candidates) in adjusted_runs(experiment) {
             runs.push(assess_run(experiment, &setting, with, &run, candidates, &mut findings));
         }
-        (runs, findings)
+        (runs, findings.split_off(before))
     });
     findings.extend(of_runs);
     findings.extend(terms::term_findings(&terms, gravity.value_m_s2));
