@@ -110,7 +110,8 @@ fn terms_that_are_absent_seldom_enter() {
 fn terms_that_are_present_enter() {
     type With = fn(f64) -> Truth;
     // Size in the usual unit, smallest share that must enter.
-    let curves: [(Term, With, [(f64, f64); 4]); 4] = [
+    type Curve = (Term, With, [(f64, f64); 4]);
+    let curves: [Curve; 4] = [
         (
             Term::K2,
             |x| Truth { k2_per_m_s2: x * 1e-6 / GN, ..bench() },

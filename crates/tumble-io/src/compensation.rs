@@ -121,6 +121,11 @@ fn impossible(c: &passport::Compensation) -> Option<&'static str> {
     }
 }
 
+/// Whether a number is none that a calibration gives.
+fn too_large(v: f64) -> bool {
+    !v.is_finite() || v.abs() >= LARGEST
+}
+
 /// Further terms as the runtime takes them.
 fn nonlinearity(terms: &passport::CompensationTerms) -> Result<Nonlinearity, CompensationRefused> {
     let impossible = |field| Err(CompensationRefused::Impossible { field });
@@ -133,15 +138,14 @@ fn nonlinearity(terms: &passport::CompensationTerms) -> Result<Nonlinearity, Com
                 seen: c.name.clone(),
             });
         };
-        if !(c.value.abs() < LARGEST) || coefficients.iter().any(|(t, _)| *t == term) {
+        if too_large(c.value) || coefficients.iter().any(|(t, _)| *t == term) {
             return impossible("compensation.terms.coefficients");
         }
         coefficients.push((term, c.value));
     }
     let needs_temperature = coefficients.iter().any(|(t, _)| t.needs_temperature());
     let reference = terms.reference_temperature_degc;
-    if reference.is_some_and(|t| !(t.abs() < LARGEST)) || (needs_temperature && reference.is_none())
-    {
+    if reference.is_some_and(too_large) || (needs_temperature && reference.is_none()) {
         return impossible("compensation.terms.reference_temperature_degc");
     }
     let rows = &terms.covariance;
@@ -151,7 +155,7 @@ fn nonlinearity(terms: &passport::CompensationTerms) -> Result<Nonlinearity, Com
     let mut covariance = Matrix::zeros(size, size);
     for (i, row) in rows.iter().enumerate() {
         for (j, value) in row.iter().enumerate() {
-            if !(value.abs() < LARGEST) || (i == j && *value < 0.0) {
+            if too_large(*value) || (i == j && *value < 0.0) {
                 return impossible("compensation.terms.covariance");
             }
             covariance[(i, j)] = *value;

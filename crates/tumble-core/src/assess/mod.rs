@@ -215,7 +215,10 @@ pub fn assess_without(
     // Which positions are used does not depend on the terms: those of the last pass are those of all.
     let materials = std::cell::RefCell::new(Vec::new());
     let ((runs, of_runs), terms) = choosing.choose(|set| {
-        let (mut runs, mut findings, mut used) = (Vec::new(), Vec::new(), Vec::new());
+        // What was found before says how a run that does not come to rest is to be taken.
+        let mut findings = findings.clone();
+        let before = findings.len();
+        let (mut runs, mut used) = (Vec::new(), Vec::new());
         let with = With { options, inputs: &inputs, set, reference_degc };
         for (run, candidates) in &adjusted {
             let candidates = (candidates.clone(), left_out);
@@ -225,7 +228,7 @@ pub fn assess_without(
             used.push(material);
         }
         materials.replace(used);
-        (runs, findings)
+        (runs, findings.split_off(before))
     });
     let materials = materials.into_inner();
     findings.extend(of_runs);

@@ -100,7 +100,14 @@ mod tests {
             .map(|(i, v)| {
                 let row = design(i);
                 let fitted: f64 = row.iter().zip(&b).map(|(x, c)| x * c).sum();
-                WeightedRow { row, y: *v, sd_lsb: 1.0, residual: v - fitted, is_bound: false, further: Default::default() }
+                WeightedRow {
+                    row,
+                    y: *v,
+                    sd_lsb: 1.0,
+                    residual: v - fitted,
+                    is_bound: false,
+                    further: Default::default(),
+                }
             })
             .collect()
     }

@@ -13,7 +13,7 @@ const MOST: usize = 12;
 
 pub(super) fn terms(page: &Page<'_>) -> Markup {
     let p = page.passport;
-    if p.terms.is_empty() {
+    if p.terms.is_empty() || !page.standing.has_coefficients() {
         return html! {};
     }
     let rows: Vec<Vec<String>> = p.terms.iter().take(MOST).map(row).collect();
