@@ -142,7 +142,13 @@ fn terms_that_are_present_enter() {
             let found = each(n, |seed| {
                 let a =
                     auto(&Truth { seed: seed + 1 + 1_000_000 * (k as u64 + 1), ..base.clone() });
-                a.terms.entered.contains(*term)
+                // By name only (a wrongly declared converter looks the same): there the test is what has the power.
+                let tried = a.terms.tried.iter().find(|t| t.term == *term).unwrap();
+                let shows = tried.test.is_some_and(|t| t.p_value < 0.002 && t.bic_gain > 0.0);
+                match term {
+                    Term::ScaleSign => !tried.entered && shows,
+                    _ => tried.entered,
+                }
             });
             let share = found.iter().filter(|f| **f).count() as f64 / n as f64;
             println!("{} of {size} {}: enters {share:.3}", term.name(), term.usual().0);

@@ -13,7 +13,7 @@ const SCALE: f64 = 0.0077;
 const EPSILON: f64 = 2e-3;
 const DELTA: f64 = -1e-3;
 
-const HEAD: &str = "[sensor]\nmodel = \"A\"\n[output]\nquantizer = \"none\"\nunit = \"LSB\"\nnominal_scale = 0.0077\n[bench]\ngravity = 9.81\n\
+const HEAD: &str = "[sensor]\nmodel = \"A\"\nk2_uncertainty_ug_per_g2 = 0\nk3_uncertainty_ug_per_g3 = 0\n[output]\nquantizer = \"none\"\nunit = \"LSB\"\nnominal_scale = 0.0077\n[bench]\ndial_scale_uncertainty_ppm = 0\neccentricity_arcmin = 0\naxis_tilt_arcmin = 0\nsensor_lean_arcmin = 0\ngravity = 9.81\n\
 gravity_uncertainty = 0.0001\nangle_uncertainty_arcmin = 0.1\n";
 
 /// A number between −1 and 1 that looks like noise; the same for the same index.

@@ -195,7 +195,7 @@ pub(crate) struct CertifyArgs {
     /// Leave positions out of the adjustment (repeatable); the passport says so.
     #[arg(long, value_name = "RUN:POSITION[,…]", value_parser = leave_out)]
     pub(crate) leave_out: Vec<LeaveOut>,
-    /// Further terms: auto, none, or of k2,k3,scale-sign,temp-bias,temp-scale [default: auto].
+    /// Further terms: none, auto, or of k2,k3,scale-sign,temp-bias,temp-scale [default: none; all are tried].
     #[arg(long, value_name = "TERMS", value_parser = terms)]
     pub(crate) terms: Option<TermChoice>,
     /// Your own types of sensors, over the folder's catalogue.toml and the built-in ones.

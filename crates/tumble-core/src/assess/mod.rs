@@ -46,7 +46,9 @@ use crate::estimate::{
 };
 use crate::judge::{self, Structure};
 use crate::nominal::{NominalScale, NominalScaleError, nominal_scale};
-use crate::systematic::{ExtraColumn, Inputs, Sites, SystematicEffect, effects, pattern};
+use crate::systematic::{
+    ExtraColumn, Inputs, Quantity, Shape, Sites, SystematicEffect, effects, pattern,
+};
 use crate::{
     Experiment, Finding, FindingKind, GravitySource, Orientation, PairUse, Position, Run,
     STANDARD_GRAVITY_M_S2,
@@ -214,7 +216,7 @@ pub fn assess_without(
     let choosing = terms::Choosing { experiment, setting: &setting, options, reference_degc };
     // Which positions are used does not depend on the terms: those of the last pass are those of all.
     let materials = std::cell::RefCell::new(Vec::new());
-    let ((runs, of_runs), terms) = choosing.choose(|set| {
+    let ((mut runs, of_runs), terms) = choosing.choose(|set| {
         // What was found before says how a run that does not come to rest is to be taken.
         let mut findings = findings.clone();
         let before = findings.len();
@@ -231,6 +233,7 @@ pub fn assess_without(
         (runs, findings.split_off(before))
     });
     let materials = materials.into_inner();
+    runs.iter_mut().for_each(|r| bounded_by_data(r, &terms));
     findings.extend(of_runs);
     findings.extend(terms::term_findings(&terms, experiment.bench.gravity.value_m_s2));
     judge::some_runs_reversed(&mut findings, &experiment.runs);
@@ -433,6 +436,26 @@ fn assess_run<'a>(
         reading_std_lsb: crate::stats::mean(&variances).map(f64::sqrt),
     };
     (assessed, material)
+}
+
+/// Where all runs together tell K2 or K3 better than the data sheet or a convention does, that is its uncertainty: what was
+/// found of it counts in full, for it was not corrected.
+fn bounded_by_data(run: &mut RunAssessment, terms: &Terms) {
+    for effect in run.effects.iter_mut().flatten().filter(|e| e.source != "stated") {
+        let of_it = terms.tried.iter().find(|t| terms::replaced(t.term) == Some(effect.quantity));
+        let Some(test) = of_it.and_then(|t| t.test) else { continue };
+        let shown = test.effect_lsb.hypot(test.standard_uncertainty_lsb);
+        if matches!(effect.quantity, Quantity::Quadratic | Quantity::Cubic)
+            && shown < effect.standard_uncertainty
+        {
+            effect.standard_uncertainty = shown;
+            effect.shape = Shape::Normal;
+            effect.source = format!(
+                "these data, which bound it more narrowly than {}",
+                effect.source.trim_start_matches("default: ")
+            );
+        }
+    }
 }
 
 /// Systematic errors on a run's parameters; fitted terms take the place of what they stand for.

@@ -1,6 +1,6 @@
 //! What goes into an estimation and what comes out.
 
-use super::terms::{Term, TermChoice};
+use super::terms::{Term, TermChoice, TermSet};
 use super::{Stabilization, ToParameters, WeightedRow};
 use crate::linalg::Matrix;
 use crate::stats::student_factor;
@@ -54,7 +54,7 @@ impl Default for EstimateOptions {
             weights: Weights::Angle,
             level: 0.95,
             monte_carlo_digits: 2,
-            terms: TermChoice::Auto,
+            terms: TermChoice::Named(TermSet::EMPTY),
         }
     }
 }

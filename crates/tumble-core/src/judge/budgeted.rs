@@ -70,7 +70,7 @@ pub fn intervals_differ(drawn: &[Drawn]) -> Vec<Finding> {
         kind: FindingKind::IntervalsDiffer,
         place: "budget".into(),
         observed: words.join("; "),
-        limit: "value ± U agrees with the coverage interval of the draws within the tolerance".into(),
+        limit: "both intervals agree within the tolerance".into(),
         remedy: "nothing is wrong with the data: where the last digit of U matters, take the interval by Monte Carlo, which \
                  stands beside it"
             .into(),

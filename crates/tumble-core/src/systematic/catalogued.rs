@@ -3,7 +3,7 @@
 use super::quantity::{Quantity, Shape};
 use super::{Input, Systematics};
 use crate::sensor_type::axis_letter;
-use crate::{Experiment, LimitOf, STANDARD_GRAVITY_M_S2, SensorMode, SensorType, TypeLimit};
+use crate::{Experiment, LimitOf, Mark, STANDARD_GRAVITY_M_S2, SensorMode, SensorType, TypeLimit};
 
 /// Default of u(K2) without a catalogue's entry: 100 µg/g², (m/s²)/(m/s²)².
 ///
@@ -41,7 +41,7 @@ struct Read {
 }
 
 impl Sheet<'_> {
-    /// The largest limit of a kind that may hold: its typical size as a standard uncertainty, else its maximum as the end
+    /// The largest verified limit of a kind that may hold: its typical size as a standard uncertainty, else its maximum as the end
     /// of a rectangle.
     fn uncertainty(&self, of: LimitOf) -> Option<Read> {
         let mode = self.mode.map(|m| m.name.as_str());
@@ -49,6 +49,8 @@ impl Sheet<'_> {
         let (value, limit) = self
             .kind
             .limits_for(of, self.axis, mode)
+            // A number from memory may warn; no certificate rests on it.
+            .filter(|l| l.mark == Mark::Verified)
             .filter_map(|l| Some((size(l)?, l)))
             .max_by(|a, b| a.0.total_cmp(&b.0))?;
         let (shown, word, shape) = match (limit.typical, limit.maximum) {
@@ -147,7 +149,7 @@ fn tempco(sheet: Option<&Sheet<'_>>) -> [Input; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Mark, SensitivityUnit};
+    use crate::SensitivityUnit;
 
     fn kind(typical: Option<f64>, maximum: Option<f64>) -> SensorType {
         let mode = |name: &str, range, sensitivity| SensorMode {
@@ -170,7 +172,7 @@ mod tests {
                 mode: None,
                 typical,
                 maximum,
-                mark: Mark::Recalled,
+                mark: Mark::Verified,
                 note: String::new(),
             }],
         }
@@ -189,7 +191,7 @@ mod tests {
         assert!((k2.standard_uncertainty * a * a / 2.0 / peak - 1.0).abs() < 1e-12);
         assert!((k3.standard_uncertainty * a * a * a / 4.0 / peak - 1.0).abs() < 1e-12);
         assert!((k2.standard_uncertainty * g * 1e6 - 707.1).abs() < 0.1);
-        assert!(k2.source.contains("nonlinearity 0.1 % FS typical (recalled"), "{}", k2.source);
+        assert!(k2.source.contains("nonlinearity 0.1 % FS typical (verified"), "{}", k2.source);
         let eight = nearest(&kind, "LSB", g / 251.0);
         let [wide, _] = curvature(&Systematics::default(), Some(&sheet(eight)));
         assert!((wide.standard_uncertainty / k2.standard_uncertainty - 0.25).abs() < 1e-12);

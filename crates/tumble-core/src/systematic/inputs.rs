@@ -4,8 +4,8 @@ use super::catalogued;
 use super::quantity::{Quantity, Shape};
 use crate::{ARCMIN_RAD, Angle, Experiment, GravitySource, Quantizer, Seat};
 
-/// What a dial is as accurate as, where no setting error is stated: the table of the paper is set by hand "to a few
-/// arcminutes" (method section 1).
+/// Limits of what a dial is as accurate as, where no setting error is stated: the table of the paper is set by hand "to a few
+/// arcminutes" (method section 1). A rectangle of that half width: 1/√3 of it is the standard uncertainty.
 pub const DEFAULT_ACCURACY_ARCMIN: f64 = 3.0;
 /// Tilt of the table's axis and lean of the sensor, where not stated: half a degree is what a bubble level and a hand give,
 /// as for upright dwells ([`crate::DEFAULT_VERTICAL_LEAN_ARCMIN`]).
@@ -104,25 +104,28 @@ fn gravity(experiment: &Experiment) -> Input {
 
 /// Scale, eccentricity and zero of the dial.
 ///
-/// **Model** a dial is as accurate as it is set: scale error = accuracy over the largest angle used, eccentricity = accuracy.
+/// **Model** a dial is as accurate as it is set: scale error = accuracy over the end of the table's range (the largest angle used,
+/// where none is stated or that is larger), eccentricity = accuracy.
 /// An amplitude `e` of unknown phase is two independent components of `e/√2` each.
 fn dial(experiment: &Experiment) -> [Input; 4] {
     let stated = &experiment.bench.systematics;
     let setting = experiment.bench.angle_uncertainty;
-    let accuracy = setting.unwrap_or(Angle::from_arcmin(DEFAULT_ACCURACY_ARCMIN));
+    let accuracy = setting.unwrap_or(Angle::from_arcmin(DEFAULT_ACCURACY_ARCMIN / 3f64.sqrt()));
     let words = match setting {
         Some(s) if s.rad() == 0.0 => "angles stated as exact".to_owned(),
         Some(s) => format!("{}′, the stated setting error", shown(s.arcmin())),
-        None => format!("{DEFAULT_ACCURACY_ARCMIN}′, a table that is set by hand"),
+        None => format!("±{DEFAULT_ACCURACY_ARCMIN}′, a table that is set by hand"),
     };
     let on_table = |p: &&crate::Position| p.seat == Seat::Table;
+    // The scale of the whole dial, where its range is stated.
+    let range = experiment.bench.range.map_or(0.0, |(lo, hi)| lo.rad().abs().max(hi.rad().abs()));
     let largest = experiment
         .runs
         .iter()
         .flat_map(|r| &r.positions)
         .filter(on_table)
         .map(|p| p.angle.rad().abs())
-        .fold(0.0, f64::max);
+        .fold(range, f64::max);
     let scale = if largest > 0.0 { accuracy.rad() / largest } else { 0.0 };
     let of_scale = match accuracy.rad() > 0.0 {
         true => format!("default: {words}, over {}°", shown(largest.to_degrees())),
@@ -251,11 +254,11 @@ mod tests {
             assert!(!l.source.is_empty(), "{}", l.quantity.name());
         }
         let (u, source) = line(&inputs, Quantity::DialScale);
-        // 3′/65° = 769 ppm.
-        assert!((u - 3.0 / 60.0 / 65.0).abs() < 1e-12);
-        assert_eq!(source, "default: 3′, a table that is set by hand, over 65°");
+        // 3′/65° = 769 ppm, as the end of a rectangle.
+        assert!((u - 3.0 / 3f64.sqrt() / 60.0 / 65.0).abs() < 1e-12);
+        assert_eq!(source, "default: ±3′, a table that is set by hand, over 65°");
         let (u, _) = line(&inputs, Quantity::EccentricityCosine);
-        assert!((u - 3.0 * ARCMIN_RAD / 2f64.sqrt()).abs() < 1e-15);
+        assert!((u - 3.0 * ARCMIN_RAD / 6f64.sqrt()).abs() < 1e-15);
     }
 
     #[test]
