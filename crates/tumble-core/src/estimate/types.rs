@@ -38,7 +38,8 @@ pub struct EstimateOptions {
     pub weights: Weights,
     /// Level of confidence of intervals.
     pub level: f64,
-    /// Significant digits of the uncertainty that Monte Carlo is to settle (JCGM 101, 7.9.2), 1 or 2; zero: no draws.
+    /// Significant digits of the uncertainty that Monte Carlo is to settle (JCGM 101, 7.9.2), 1 or 2; zero: no draws, as here by default:
+    /// they take longer than all the rest. `tumble certify` asks for two.
     pub monte_carlo_digits: u32,
     /// Further terms of the model. [`Method::Paper`] has none. One run alone takes [`TermChoice::Auto`] for none: the
     /// choice needs all runs.
@@ -53,7 +54,7 @@ impl Default for EstimateOptions {
             method: Method::Likelihood,
             weights: Weights::Angle,
             level: 0.95,
-            monte_carlo_digits: 2,
+            monte_carlo_digits: 0,
             terms: TermChoice::Named(TermSet::EMPTY),
         }
     }
