@@ -212,13 +212,19 @@ impl FromIterator<Term> for TermSet {
 }
 
 /// Which further terms an assessment enters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TermChoice {
     /// Every term is tried; it enters where the data ask for it and the plan bears it.
-    #[default]
     Auto,
     /// These, whether significant or not; the empty set is none.
     Named(TermSet),
+}
+
+impl Default for TermChoice {
+    /// None: a curve that is left over may be the table's, and nobody but the user can tell.
+    fn default() -> Self {
+        Self::Named(TermSet::EMPTY)
+    }
 }
 
 impl TermChoice {

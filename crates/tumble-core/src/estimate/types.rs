@@ -1,6 +1,6 @@
 //! What goes into an estimation and what comes out.
 
-use super::terms::{Term, TermChoice, TermSet};
+use super::terms::{Term, TermChoice};
 use super::{Stabilization, ToParameters, WeightedRow};
 use crate::linalg::Matrix;
 use crate::stats::student_factor;
@@ -55,7 +55,7 @@ impl Default for EstimateOptions {
             weights: Weights::Angle,
             level: 0.95,
             monte_carlo_digits: 0,
-            terms: TermChoice::Named(TermSet::EMPTY),
+            terms: TermChoice::default(),
         }
     }
 }
