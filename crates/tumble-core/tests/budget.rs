@@ -33,7 +33,7 @@ fn stated() -> Systematics {
 fn calibration(base: &Truth, seed: u64, digits: u32) -> (Assessment, [f64; 3]) {
     let mut rng = Pcg64Mcg::seed_from_u64(0x5eed ^ seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
     let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
-    // A rectangular error of the amplitude's two components, each normal: amplitude and phase follow.
+    // Two components, each normal: amplitude and phase follow.
     let component = ECCENTRICITY_ARCMIN / 2f64.sqrt();
     let (sine, cosine) = (component * normal(), component * normal());
     let mut truth = Truth {
@@ -120,7 +120,7 @@ fn the_combined_interval_covers_where_the_statistical_one_does_not() {
 }
 
 #[test]
-fn draws_confirm_the_interval_of_many_positions_and_not_that_of_two_runs() {
+fn draws_have_the_uncertainty_of_the_budget_and_are_the_same_each_time() {
     let one = calibration(&base("-65:65:60", 1, false), 7, 2).0;
     for d in &one.drawn {
         println!("{}: {} draws, {:?}, {:?}", d.parameter.words(), d.draws, d.output, d.validation);

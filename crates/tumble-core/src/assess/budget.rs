@@ -1,6 +1,6 @@
 //! The budget: scatter and what scatter does not show, put together parameter by parameter.
 
-use super::{Interval, PooledParameter, PooledRuns, RunAssessment, pool_runs};
+use super::{Interval, PooledParameter, PooledRuns, RunAssessment, SharedPair, pool_runs};
 use crate::estimate::Parameter;
 use crate::linalg::Matrix;
 use crate::stats::normal_quantile;
@@ -46,7 +46,8 @@ pub(super) struct Common<'a> {
 /// What all runs share of systematic errors.
 ///
 /// **Model** a pooled value `Σ_r w_r·θ_r` moves by `Σ_r w_r·c_r` with an error that is common to all runs, as errors of one
-/// bench are. What rounding leaves repeats at the same angles: its sizes add up.
+/// bench are. What rounding leaves repeats at the same angles: its sizes add up. A shared up/down pair has a scale error that is
+/// as proportional to gravity and to the reference as that of a run; the table does not touch it.
 pub(super) fn common<'a>(together: &PooledRuns, runs: &'a [RunAssessment]) -> Vec<Common<'a>> {
     let of_run = |r: &'a RunAssessment, q: Quantity| {
         r.effects.as_ref().and_then(|all| all.iter().find(|e| e.quantity == q))
@@ -64,7 +65,13 @@ pub(super) fn common<'a>(together: &PooledRuns, runs: &'a [RunAssessment]) -> Ve
                     };
                     Some((0..3).map(moved).sum::<f64>())
                 });
-                terms.sum()
+                let of_pair = match q {
+                    Quantity::Gravity | Quantity::Reference => {
+                        p.pair_weight * effect.sensitivity[Parameter::ScaleError.index()]
+                    }
+                    _ => 0.0,
+                };
+                terms.sum::<f64>() + of_pair
             };
             let sensitivities = together.parameters.iter().map(sensitivity).collect();
             Some(Common { effect, sensitivities })
@@ -170,9 +177,13 @@ pub(super) fn complete(
     covariance
 }
 
-/// Runs put together with the budget in them, without a shared pair: what leaving something out changes.
-pub(super) fn pooled(runs: &[RunAssessment], level: f64) -> Vec<PooledParameter> {
-    let mut together = pool_runs(runs, None, level);
+/// Runs put together with the budget in them: what leaving something out changes.
+pub(super) fn pooled(
+    runs: &[RunAssessment],
+    pair: Option<&SharedPair>,
+    level: f64,
+) -> Vec<PooledParameter> {
+    let mut together = pool_runs(runs, pair, level);
     let common = common(&together, runs);
     complete(&mut together, &common, level);
     together.parameters

@@ -10,6 +10,7 @@ mod pair;
 mod pool;
 mod repeat;
 mod result;
+mod run;
 mod terms;
 mod units;
 mod verdict;
@@ -39,19 +40,15 @@ pub(crate) use terms::{
 pub(crate) use verdict::for_want_of_runs;
 
 use outliers::Material;
+use run::{With, adjusted_runs, assess_run, bounded_by_data};
 
-use crate::estimate::{
-    Estimate, EstimateOptions, Residual, Setting, TermSet, Weights, determines_all, estimate,
-    estimate_with_terms,
-};
+use crate::estimate::{Estimate, EstimateOptions, Method, Residual, Setting, TermSet, Weights};
 use crate::judge::{self, Structure};
 use crate::nominal::{NominalScale, NominalScaleError, nominal_scale};
-use crate::systematic::{
-    ExtraColumn, Inputs, Quantity, Shape, Sites, SystematicEffect, effects, pattern,
-};
+use crate::systematic::{Inputs, SystematicEffect};
 use crate::{
     Experiment, Finding, FindingKind, GravitySource, Orientation, PairUse, Position, Run,
-    STANDARD_GRAVITY_M_S2,
+    STANDARD_GRAVITY_M_S2, Severity,
 };
 
 /// Everything that is known about an experiment after it was judged.
@@ -213,41 +210,25 @@ pub fn assess_without(
     let inputs = Inputs::of(experiment, k0.value_m_s2_per_lsb);
     let adjusted = adjusted_runs(experiment);
     let reference_degc = terms::reference_temperature(experiment);
-    let choosing = terms::Choosing { experiment, setting: &setting, options, reference_degc };
-    // Which positions are used does not depend on the terms: those of the last pass are those of all.
-    let materials = std::cell::RefCell::new(Vec::new());
-    let ((mut runs, of_runs), terms) = choosing.choose(|set| {
-        // What was found before says how a run that does not come to rest is to be taken.
-        let mut findings = findings.clone();
-        let before = findings.len();
-        let (mut runs, mut used) = (Vec::new(), Vec::new());
-        let with = With { options, inputs: &inputs, set, reference_degc };
-        for (run, candidates) in &adjusted {
-            let candidates = (candidates.clone(), left_out);
-            let (assessed, material) =
-                assess_run(experiment, &setting, with, run, candidates, &mut findings);
-            runs.push(assessed);
-            used.push(material);
-        }
-        materials.replace(used);
-        (runs, findings.split_off(before))
-    });
-    let materials = materials.into_inner();
+    let (mut runs, materials, terms) = {
+        let with = With { options, inputs: &inputs, set: TermSet::EMPTY, reference_degc };
+        let known = (experiment, &setting, &adjusted[..], left_out);
+        estimated(known, with, &mut findings)
+    };
     runs.iter_mut().for_each(|r| bounded_by_data(r, &terms));
-    findings.extend(of_runs);
     findings.extend(terms::term_findings(&terms, experiment.bench.gravity.value_m_s2));
     judge::some_runs_reversed(&mut findings, &experiment.runs);
 
     let shared_pair = match options.method {
         // It knows the pair for k0 alone.
-        crate::estimate::Method::Paper => None,
+        Method::Paper => None,
         _ => shared_pair(experiment, &setting, &runs),
     };
     let mut together = pool_runs(&runs, shared_pair.as_ref(), options.level);
     let common = budget::common(&together, &runs);
     let whole = budget::complete(&mut together, &common, options.level);
     let pooled = together.parameters.clone();
-    let contradicted = findings.iter().any(|f| f.kind.severity() == crate::Severity::Reject);
+    let contradicted = findings.iter().any(|f| f.kind.severity() == Severity::Reject);
     findings.extend(judge::reproducible(&experiment.runs, &pooled));
     findings.extend(judge::runs_differ(&pooled));
     findings.extend(judge::reversal(&runs, &together));
@@ -274,7 +255,8 @@ pub fn assess_without(
             influence: &influence,
         }));
     }
-    let entered = outliers::Fitted { options, set: terms.entered, reference_degc };
+    let pair = shared_pair.as_ref();
+    let entered = outliers::Fitted { options, set: terms.entered, reference_degc, pair };
     let judged = (&setting, entered);
     let outliers = outliers::judge(&materials, &runs, &pooled, judged, &mut findings);
     let error_level = error_level(&runs, &setting);
@@ -325,227 +307,38 @@ pub fn assess_without(
     })
 }
 
-/// Runs with the positions of their adjustment: up/down dwells come first in the run that they belong to, and
-/// stand as a run of their own where there is no other.
-fn adjusted_runs(experiment: &Experiment) -> Vec<(Run, Vec<&Position>)> {
-    let pair = experiment.vertical.as_ref();
-    if experiment.runs.is_empty() {
-        return pair
-            .map(|p| {
-                let run = Run {
-                    name: "up/down".into(),
-                    mounting: "up/down".into(),
-                    orientation: Orientation::Normal,
-                    positions: vec![p.up.clone(), p.down.clone()],
-                    date: None,
-                };
-                (run, vec![&p.up, &p.down])
-            })
-            .into_iter()
-            .collect();
-    }
-    experiment
-        .runs
-        .iter()
-        .map(|run| {
-            let own = pair.filter(|p| p.run.as_deref() == Some(run.name.as_str()));
-            let positions =
-                own.map(|p| [&p.up, &p.down]).into_iter().flatten().chain(&run.positions).collect();
-            (run.clone(), positions)
-        })
-        .collect()
-}
+/// Experiment, setting, runs with the positions of their adjustment, and what the user left out.
+type Known<'k, 'a> =
+    (&'a Experiment, &'k Setting<'a>, &'a [(Run, Vec<&'a Position>)], &'k [LeftOut]);
 
-/// How runs are estimated: options, and the further terms of this pass.
-#[derive(Clone, Copy)]
-struct With<'a> {
-    options: &'a EstimateOptions,
-    inputs: &'a Inputs,
-    set: TermSet,
-    reference_degc: Option<f64>,
-}
-
-fn assess_run<'a>(
-    experiment: &Experiment,
-    setting: &Setting<'_>,
-    with: With<'_>,
-    run: &'a Run,
-    (candidates, left_out): (Vec<&'a Position>, &[LeftOut]),
-    findings: &mut Vec<Finding>,
-) -> (RunAssessment, Material<'a>) {
-    let bench = &experiment.bench;
-    let options = with.options;
-    let k0 = setting.nominal_scale_m_s2_per_lsb;
-    // The paper's adjustment uses [scale] for k0 alone.
-    let candidates = match options.method {
-        crate::estimate::Method::Paper if !experiment.runs.is_empty() => {
-            run.positions.iter().collect()
-        }
-        _ => candidates,
-    };
-    let Material { used: numbered, left_out: omitted, .. } =
-        outliers::split(run, candidates, left_out);
-    let candidates: Vec<&Position> = numbered.iter().map(|(_, p)| *p).collect();
-    // Bounds refine what the other dwells determine; alone they are no start.
-    let whole: Vec<&Position> = candidates
-        .iter()
-        .copied()
-        .filter(|p| p.readings.censored(&experiment.output.ends) == 0)
-        .collect();
-    let censored = match options.method {
-        crate::estimate::Method::Likelihood if determines_all(&whole, setting) => {
-            judge::Censored::Kept
-        }
-        _ => judge::Censored::LeftOut,
-    };
-    let output = &experiment.output;
-    let usable = judge::usable_positions(run, candidates.clone(), output, bench, k0, censored);
-    let judge::Hygiene { findings: hygiene, noticed } =
-        judge::data_hygiene(&run.name, &candidates, output, bench, &usable.findings);
-    let contradicted = hygiene.iter().any(|f| f.kind.severity() == crate::Severity::Reject);
-    findings.extend(usable.findings);
-    findings.extend(hygiene);
-    let positions = usable.positions;
-    findings.extend(judge::noise(&run.name, &positions, output, options.method));
-    let estimate = adjust(&run.name, &positions, setting, with, findings);
-    if let Some(e) = &estimate {
-        findings.extend(estimate_findings(experiment, k0, options, &run.name, e, contradicted));
-    }
-    let variances: Vec<f64> =
-        positions.iter().filter_map(|p| p.readings.std()).map(|s| s * s).collect();
-    let effects = estimate.as_ref().and_then(|e| run_effects(e, &positions, setting, with));
-    let material = Material {
-        used: outliers::numbered(&numbered, &positions),
-        left_out: omitted,
-        noticed: noticed.into_iter().filter_map(|(i, k)| Some((numbered[i].0?, k))).collect(),
-    };
-    let assessed = RunAssessment {
-        effects,
-        name: run.name.clone(),
-        mounting: run.mounting.clone(),
-        orientation: run.orientation,
-        estimate,
-        mean_codes: positions
-            .iter()
-            .map(|p| {
-                let whole = p.readings.censored(&experiment.output.ends) == 0;
-                p.readings.mean().filter(|_| whole)
-            })
-            .collect(),
-        temperatures_degc: positions.iter().map(|p| p.temperature_degc).collect(),
-        reading_std_lsb: crate::stats::mean(&variances).map(f64::sqrt),
-    };
-    (assessed, material)
-}
-
-/// Where all runs together tell K2 or K3 better than the data sheet or a convention does, that is its uncertainty: what was
-/// found of it counts in full, for it was not corrected.
-fn bounded_by_data(run: &mut RunAssessment, terms: &Terms) {
-    for effect in run.effects.iter_mut().flatten().filter(|e| e.source != "stated") {
-        let of_it = terms.tried.iter().find(|t| terms::replaced(t.term) == Some(effect.quantity));
-        let Some(test) = of_it.and_then(|t| t.test) else { continue };
-        let shown = test.effect_lsb.hypot(test.standard_uncertainty_lsb);
-        if matches!(effect.quantity, Quantity::Quadratic | Quantity::Cubic)
-            && shown < effect.standard_uncertainty
-        {
-            effect.standard_uncertainty = shown;
-            effect.shape = Shape::Normal;
-            effect.source = format!(
-                "these data, which bound it more narrowly than {}",
-                effect.source.trim_start_matches("default: ")
-            );
-        }
-    }
-}
-
-/// Systematic errors on a run's parameters; fitted terms take the place of what they stand for.
-fn run_effects(
-    estimate: &Estimate,
-    positions: &[&Position],
-    setting: &Setting<'_>,
-    with: With<'_>,
-) -> Option<Vec<SystematicEffect>> {
-    let sites = Sites::of(estimate, positions, setting, with.inputs.temperature_spread_k)?;
-    let fitted = estimate.terms.iter().filter_map(|t| {
-        let replaces = terms::replaced(t.term);
-        let lsb = pattern(replaces?, &sites, setting)?;
-        Some(ExtraColumn { lsb, replaces })
-    });
-    effects(estimate, positions, setting, with.inputs, &fitted.collect::<Vec<_>>())
-}
-
-/// What a run's estimate says. Values from data that are known to be wrong (`contradicted`) are not held against what
-/// is possible: their cure is another.
-fn estimate_findings(
-    experiment: &Experiment,
-    nominal_scale: f64,
-    options: &EstimateOptions,
-    run: &str,
-    estimate: &Estimate,
-    contradicted: bool,
-) -> Vec<Finding> {
-    let (bench, output) = (&experiment.bench, &experiment.output);
-    let g = bench.gravity.value_m_s2;
-    let mut findings = judge::few_angles(run, estimate);
-    if !contradicted {
-        let scale = (output, nominal_scale);
-        findings.extend(judge::plausible(run, estimate, options.method, g, options.level, scale));
-    }
-    let stated = bench.angle_uncertainty.map(crate::Angle::arcmin);
-    findings.extend(judge::table(run, estimate, stated, g / nominal_scale));
-    findings.extend(judge::determined_run(run, estimate));
-    findings.extend(judge::settled(run, estimate));
-    findings.extend(judge::slow_noise(run, estimate));
-    findings
-}
-
-/// Estimates a run. Where weights and solution find no fixed point, equal weights show what the data hold: the
-/// run is rejected all the same, but its residuals can say why.
-fn adjust(
-    run: &str,
-    positions: &[&Position],
-    setting: &Setting<'_>,
+/// All runs, with the terms that were named or that the data ask for.
+fn estimated<'a>(
+    (experiment, setting, adjusted, left_out): Known<'_, 'a>,
     with: With<'_>,
     findings: &mut Vec<Finding>,
-) -> Option<Estimate> {
-    let options = with.options;
-    if positions.is_empty() {
-        return None;
-    }
-    let estimated = estimate_with_terms(positions, setting, options, with.set, with.reference_degc);
-    let error = match estimated {
-        Ok(e) => return Some(e),
-        Err(error) => error,
-    };
-    // Up/down dwells that are exchanged find no fixed point, and that has been said already.
-    if findings.iter().any(|f| f.kind == FindingKind::SignReversed && f.place == "[scale]") {
-        return None;
-    }
-    findings.push(Finding {
-        kind: FindingKind::NotConverged,
-        place: run.to_owned(),
-        observed: error.to_string(),
-        limit: "a fixed point".into(),
-        remedy: "check the run's angles and codes: they do not belong together".into(),
+) -> (Vec<RunAssessment>, Vec<Material<'a>>, Terms) {
+    let With { options, reference_degc, .. } = with;
+    let choosing = terms::Choosing { experiment, setting, options, reference_degc };
+    // Which positions are used does not depend on the terms: those of the last pass are those of all.
+    let materials = std::cell::RefCell::new(Vec::new());
+    let ((runs, of_runs), terms) = choosing.choose(|set| {
+        // What was found before says how a run that does not come to rest is to be taken.
+        let mut findings = findings.clone();
+        let before = findings.len();
+        let (mut runs, mut used) = (Vec::new(), Vec::new());
+        for (run, candidates) in adjusted {
+            let candidates = (candidates.clone(), left_out);
+            let with = With { set, ..with };
+            let (assessed, material) =
+                assess_run(experiment, setting, with, run, candidates, &mut findings);
+            runs.push(assessed);
+            used.push(material);
+        }
+        materials.replace(used);
+        (runs, findings.split_off(before))
     });
-    // Averages at the converter's ends are none.
-    let inside: Vec<&Position> =
-        positions.iter().copied().filter(|p| p.readings.censored(&setting.ends) == 0).collect();
-    let plain = EstimateOptions {
-        method: plain_method(options.method),
-        weights: Weights::Equal,
-        ..*options
-    };
-    estimate(&inside, setting, &plain).ok()
-}
-
-/// The estimator that always has an answer.
-fn plain_method(method: crate::estimate::Method) -> crate::estimate::Method {
-    use crate::estimate::Method::{Exact, Likelihood, Paper};
-    match method {
-        Paper => Paper,
-        Exact | Likelihood => Exact,
-    }
+    findings.extend(of_runs);
+    (runs, materials.into_inner(), terms)
 }
 
 /// Structure in each run alone and in all together; one finding, the most telling.

@@ -5,7 +5,7 @@
 mod study;
 mod words;
 
-use super::{AssessError, PooledParameter, RunAssessment};
+use super::{AssessError, PooledParameter, RunAssessment, SharedPair};
 use crate::estimate::{
     Estimate, EstimateOptions, Parameter, Setting, TermSet, estimate_with_terms,
 };
@@ -239,6 +239,8 @@ pub(super) struct Fitted<'a> {
     pub options: &'a EstimateOptions,
     pub set: TermSet,
     pub reference_degc: Option<f64>,
+    /// What else goes into the pooled values.
+    pub pair: Option<&'a SharedPair>,
 }
 
 /// Positions that do not belong or were left out, with what they do to the results.
@@ -249,13 +251,13 @@ pub(super) fn judge(
     (setting, fitted): (&Setting<'_>, Fitted<'_>),
     findings: &mut Vec<Finding>,
 ) -> Outliers {
-    let Fitted { options, set, reference_degc } = fitted;
+    let Fitted { options, set, reference_degc, pair } = fitted;
     let g = &setting.bench.gravity;
     let again = Again {
         fit: &|positions| {
             estimate_with_terms(positions, setting, options, set, reference_degc).ok()
         },
-        pool: &|runs| super::budget::pooled(runs, options.level),
+        pool: &|runs| super::budget::pooled(runs, pair, options.level),
         level: options.level,
         least_sd_lsb: limits::LEAST_SCATTER_RAD * g.value_m_s2 / setting.nominal_scale_m_s2_per_lsb,
     };

@@ -46,7 +46,8 @@ impl Input {
 pub struct Measurement<F, const N: usize> {
     /// Inputs in the order of the model.
     pub inputs: [Input; N],
-    /// Correlated pairs with their coefficients. Only normal and Student inputs may be correlated.
+    /// Correlated pairs with their coefficients, together a correlation matrix. Only of normal and Student inputs: draws of
+    /// others are independent. Correlated Student inputs of the same degrees of freedom share their `χ²`.
     pub correlations: Vec<(usize, usize, f64)>,
     /// The model.
     pub model: F,
@@ -63,7 +64,8 @@ pub struct Output<const N: usize> {
     pub contributions: [f64; N],
     /// Combined standard uncertainty, first order.
     pub standard_uncertainty: f64,
-    /// Variance that the second derivatives add: `½ Σ (∂²f/∂x_i∂x_j)² u_i² u_j²` over all `i`, `j`.
+    /// Variance that the second derivatives add: `½ Σ (∂²f/∂x_i∂x_j)² u_i² u_j²` over all `i`, `j`, for independent normal
+    /// inputs (a rectangle squared adds less); third derivatives are left out.
     pub second_order_variance: f64,
     /// What the second derivatives move the mean by: `½ Σ ∂²f/∂x_i² u_i²`.
     pub second_order_shift: f64,

@@ -97,7 +97,13 @@ impl MonteCarloOutput {
 
 /// `δ = ½·10^l` for `u = c·10^l` with `c` an integer of so many digits. JCGM 101, 7.9.2.
 fn tolerance(u: f64, digits: u32) -> f64 {
-    if u > 0.0 { 0.5 * 10f64.powi(u.log10().floor() as i32 + 1 - digits as i32) } else { 0.0 }
+    if u <= 0.0 || u.is_nan() {
+        return 0.0;
+    }
+    let unit = |u: f64| 10f64.powi(u.log10().floor() as i32 + 1 - digits as i32);
+    // 0.0996 is 0.10 to two digits: the unit is that of the rounded number.
+    let rounded = (u / unit(u)).round() * unit(u);
+    0.5 * unit(rounded * (1.0 + 1e-9))
 }
 
 /// A batch: its draws, output by output, and what they say alone.
@@ -156,7 +162,11 @@ impl<F: Sync, const N: usize> Measurement<F, N> {
                     })
                 })
                 .collect();
-            workers.into_iter().filter_map(|w| w.join().ok()).flatten().collect()
+            // A model that panics panics here, too: no batch is lost in silence.
+            let joined = |w: std::thread::ScopedJoinHandle<'_, Vec<(usize, Batch<M>)>>| {
+                w.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+            };
+            workers.into_iter().flat_map(joined).collect()
         });
         out.sort_by_key(|(k, _)| *k);
         out.into_iter().map(|(_, b)| b).collect()
@@ -319,4 +329,23 @@ fn summed_up<const M: usize>(
         }
     });
     MonteCarlo { draws, stabilized, outputs, covariance }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_tolerance_is_half_of_the_last_digit_of_the_rounded_number() {
+        // JCGM 101, 7.9.2: 0.000 32 to two digits is 32·10⁻⁵, to one 3·10⁻⁴.
+        for (u, digits, delta) in [
+            (0.000_32, 2, 5e-6),
+            (0.000_32, 1, 5e-5),
+            (2.0, 2, 0.05),
+            (0.0996, 2, 5e-3),
+            (0.0, 2, 0.0),
+        ] {
+            assert!((tolerance(u, digits) - delta).abs() < 1e-12, "{u}");
+        }
+    }
 }

@@ -137,3 +137,20 @@ fn the_baseline_does_not_take_the_pair() {
     let options = EstimateOptions { method: Method::Paper, ..EstimateOptions::default() };
     assert!(assess(&e, &options).unwrap().shared_pair.is_none());
 }
+
+/// What the pair carries of the scale factor is as proportional to gravity as what the runs carry.
+#[test]
+fn gravity_is_in_the_pair_as_it_is_in_the_runs() {
+    let mut e = with_pair(&Truth { seed: 5, ..quiet_table() });
+    e.bench.gravity.standard_uncertainty_m_s2 = 1e-3;
+    let a = assess(&e, &OPTIONS).unwrap();
+    let scale = find(&a.pooled, Parameter::ScaleError);
+    let of = |l: &&tumble_core::assess::BudgetLine| {
+        l.parameter == Parameter::ScaleError && l.quantity == "local gravity"
+    };
+    let line = a.budget.iter().find(of).unwrap();
+    let expected = (1.0 + scale.value) / e.bench.gravity.value_m_s2;
+    // The runs' own values differ a little from the pooled one.
+    assert!(scale.pair_weight > 0.01, "{}", scale.pair_weight);
+    assert!((line.sensitivity / expected - 1.0).abs() < 1e-3, "{} {expected}", line.sensitivity);
+}

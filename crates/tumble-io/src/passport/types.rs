@@ -1,4 +1,6 @@
 //! Shapes of `passport.json`. What a field means is written in `docs/passport.md`.
+//!
+//! Past 500 lines: one wire format, read from top to bottom beside its schema.
 #![allow(missing_docs)] // Field names are the documentation of the schema; see docs/passport.md.
 
 use serde::{Deserialize, Serialize};

@@ -38,9 +38,10 @@ pub(super) fn result(page: &Page<'_>) -> Markup {
         ))
         (table(
             "",
-            &format!("What the uncertainty is made of, and what the next power-up may bring ({level})."),
-            &[text("Parameter"), numbers("u, statistical"), numbers("u, budget"), numbers("sd between runs"),
-              numbers("ω between power-ups"), numbers("Next estimate"), numbers("Next true value"), units("Unit")],
+            &format!("What the uncertainty is made of, and what the next power-up may bring ({level}). s: standard deviation between runs; ω: \
+                 of the true value between power-ups."),
+            &[text("Parameter"), numbers("u, scatter"), numbers("u, budget"), numbers("s"),
+              numbers("ω"), numbers("Next estimate"), numbers("Next true value"), units("Unit")],
             &parts,
         ))
         (prediction_note(result))

@@ -19,7 +19,7 @@ pub(super) fn terms(page: &Page<'_>) -> Markup {
     let rows: Vec<Vec<String>> = p.terms.iter().take(MOST).map(row).collect();
     let level = crate::summary::level(p);
     let how = match p.options.terms.as_deref() {
-        Some("auto") => "Tried by themselves",
+        Some("auto") => "Entered by themselves where the data ask for it",
         Some("none") => "None asked for; tried for the bound",
         _ => "Named, the others tried for the bound",
     };
