@@ -90,6 +90,8 @@ fn the_combined_interval_covers_where_the_statistical_one_does_not() {
         ("-60:60:13", 3, false),
         ("-65:65:30", 3, true),
     ];
+    // All cases are printed before the first fault ends it.
+    let mut faults = Vec::new();
     for (plan, runs, upright) in options {
         let base = base(plan, runs, upright);
         let (mut covered, mut alone) = ([0u32; 3], [0u32; 3]);
@@ -113,10 +115,12 @@ fn the_combined_interval_covers_where_the_statistical_one_does_not() {
             // 95 ± 1 % for the full number; the binomial scatter of fewer comes on top.
             let se = 100.0 * (0.95 * 0.05 / n as f64).sqrt();
             let bound = if n == 5000 { 1.0 } else { 1.0 + 3.0 * se };
-            assert!((all - 95.0).abs() <= bound, "{all}");
-            assert!(scatter < all, "{scatter}");
+            if (all - 95.0).abs() > bound || scatter >= all {
+                faults.push(format!("{plan}, {runs} runs: {}: {all} ({scatter})", p.words()));
+            }
         }
     }
+    assert!(faults.is_empty(), "{faults:#?}");
 }
 
 #[test]
