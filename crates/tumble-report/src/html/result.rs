@@ -152,7 +152,8 @@ fn prediction_note(result: &ResultSection) -> Markup {
                      without a run's own uncertainty. It is the one to start a navigation filter with; where ω is small against \
                      a run's own uncertainty it is on the safe side. "
                 }
-                "Both are wider than ± U, which holds for the mean over power-ups."
+                "± U holds for the mean over power-ups. The next estimate has the errors of the bench in common with these runs, so it \
+                 may be narrower than ± U."
             }
         } @else {
             p .small {
