@@ -1,0 +1,24 @@
+//! Noise of a sensor at rest: Allan variance and its relatives, with what they tell.
+//!
+//! The way: readings at a constant interval are summed up ([`Velocity`]); squared differences over averaging times give
+//! the variances ([`variances`]); the slope at each time names the kind of noise ([`NoiseKind`]), which gives the degrees
+//! of freedom and the band; a weighted fit with no negative coefficient gives Q, N, B, K and R.
+//!
+//! **Source** NIST SP 1065; IEEE Std 952 and 1554 for the names of the coefficients; metrology section 5.
+
+mod covariance;
+mod deviation;
+mod differences;
+mod edf;
+mod kind;
+mod model;
+mod stream;
+mod velocity;
+
+pub use covariance::allan_covariance;
+pub use deviation::{Deviation, Variance, octaves, variances};
+pub use edf::{band, degrees_of_freedom, degrees_of_freedom_discrete};
+pub use kind::{NoiseKind, kind_at};
+pub use model::{Coefficient, Coefficients, NoiseFit, fit};
+pub use stream::{FULL_OVERLAP, VarianceStream};
+pub use velocity::Velocity;

@@ -1,0 +1,9 @@
+//! Allan variance and its relatives against NIST SP 1065, Stable32, and records whose noise is known.
+#![allow(clippy::unwrap_used)] // A test that cannot unwrap has failed.
+
+#[path = "noise/coverage.rs"]
+mod coverage;
+#[path = "noise/nbs14.rs"]
+mod nbs14;
+#[path = "noise/stable32.rs"]
+mod stable32;
