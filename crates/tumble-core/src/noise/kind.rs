@@ -50,61 +50,101 @@ impl NoiseKind {
 }
 
 /// Fewest averages from which the correlation of neighbours is believed.
-const FEWEST: usize = 30;
+const FEWEST: u64 = 30;
 
-/// The kind of noise at an averaging factor, from the lag-1 autocorrelation of the averaged record; `None` where fewer
-/// than 30 averages are left.
+/// Sums over averages of a record, one after another without overlap, that tell what kind of noise they hold.
 ///
-/// **Model** `r1` of the averages, differenced `d` times until `δ = r1/(1+r1) < 1/4`; then `α = −2δ − 2d`, rounded. White
-/// noise of the velocity at `m = 1` is seen in the velocity itself, which is differenced once more: `α + 2`.
+/// **Model** `r1`, the lag-1 autocorrelation of the averages; where `δ = r1/(1+r1)` is a quarter or more, that of their
+/// differences, `d = 1`, and so on; then `α = −2δ − 2d`, rounded.
 ///
 /// **Source** W. J. Riley, C. A. Greenhall, *Power law noise identification using the lag 1 autocorrelation*, EFTF 2004.
-#[must_use]
-pub fn kind_at(velocity: &[f64], factor: usize, deviation: Deviation) -> Option<NoiseKind> {
-    // The deepest difference that the deviation can bear.
-    let deepest = if deviation == Deviation::Hadamard { 3 } else { 2 };
-    let mut z: Vec<f64> = velocity.iter().copied().step_by(factor).collect();
-    if z.len() < FEWEST + 1 {
-        return None;
-    }
-    // A linear drift of the reading is a parabola of the velocity: taken out, as it is no noise.
-    detrend(&mut z);
-    let mut differenced = 0;
-    loop {
-        let delta = lag_one(&z).map(|r| r / (1.0 + r))?;
-        if delta < 0.25 || differenced == deepest {
-            // Of the velocity: its power is α − 2.
-            return Some(NoiseKind::nearest(-2.0 * delta - 2.0 * f64::from(differenced) + 2.0));
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct KindSums {
+    last: Option<f64>,
+    averages: LagOne,
+    differences: LagOne,
+    second: LagOne,
+}
+
+impl KindSums {
+    /// The next point of the velocity, one averaging time after the last.
+    pub fn push(&mut self, velocity: f64) {
+        if let Some(average) = self.last.replace(velocity).map(|last| velocity - last)
+            && let Some(difference) = self.averages.push(average)
+            && let Some(second) = self.differences.push(difference)
+        {
+            self.second.push(second);
         }
-        z = z.windows(2).map(|w| w[1] - w[0]).collect();
-        differenced += 1;
-        if z.len() < FEWEST {
+    }
+
+    /// The kind of noise; `None` below 30 averages. [`Deviation::Hadamard`] bears one difference more.
+    #[must_use]
+    pub fn kind(&self, deviation: Deviation) -> Option<NoiseKind> {
+        if self.averages.count < FEWEST {
             return None;
         }
-    }
-}
-
-/// Correlation of neighbours about the mean; `None` of a constant.
-fn lag_one(z: &[f64]) -> Option<f64> {
-    let mean = crate::stats::mean(z)?;
-    let square: f64 = z.iter().map(|v| (v - mean).powi(2)).sum();
-    let product: f64 = z.windows(2).map(|w| (w[0] - mean) * (w[1] - mean)).sum();
-    (square > 0.0).then_some(product / square)
-}
-
-/// Takes a parabola out, by least squares on orthogonal polynomials.
-fn detrend(z: &mut [f64]) {
-    let n = z.len() as f64;
-    let t = |i: usize| 2.0 * i as f64 / (n - 1.0) - 1.0;
-    let mean_square = (0..z.len()).map(|i| t(i).powi(2)).sum::<f64>() / n;
-    let basis: [&dyn Fn(usize) -> f64; 3] = [&|_| 1.0, &t, &|i| t(i).powi(2) - mean_square];
-    for p in basis {
-        let (mut along, mut square) = (0.0, 0.0);
-        for (i, v) in z.iter().enumerate() {
-            along += v * p(i);
-            square += p(i) * p(i);
+        let chain = [&self.averages, &self.differences, &self.second];
+        let deepest = if deviation == Deviation::Hadamard { 2 } else { 1 };
+        for (d, sums) in chain.iter().enumerate() {
+            let r = sums.correlation()?;
+            let delta = r / (1.0 + r);
+            if delta < 0.25 || d == deepest {
+                return Some(NoiseKind::nearest(-2.0 * delta - 2.0 * d as f64));
+            }
         }
-        let share = along / square;
-        z.iter_mut().enumerate().for_each(|(i, v)| *v -= share * p(i));
+        None
     }
+}
+
+/// Sums of a series and of products of neighbours.
+#[derive(Debug, Clone, Default, PartialEq)]
+struct LagOne {
+    count: u64,
+    /// Taken from every value, so that the sums keep their digits.
+    origin: f64,
+    first: f64,
+    last: f64,
+    sum: f64,
+    square: f64,
+    product: f64,
+}
+
+impl LagOne {
+    /// The next value; gives its difference from the last.
+    fn push(&mut self, value: f64) -> Option<f64> {
+        if self.count == 0 {
+            self.origin = value;
+        }
+        let v = value - self.origin;
+        let difference = (self.count > 0).then_some(v - self.last);
+        if self.count == 0 {
+            self.first = v;
+        } else {
+            self.product += v * self.last;
+        }
+        self.count += 1;
+        self.sum += v;
+        self.square += v * v;
+        self.last = v;
+        difference
+    }
+
+    /// Correlation of neighbours about the mean; `None` of a constant.
+    fn correlation(&self) -> Option<f64> {
+        let n = self.count as f64;
+        let mean = self.sum / n;
+        let square = self.square - n * mean * mean;
+        // Σ (v_i − μ)(v_{i+1} − μ): the ends stand in one of the two sums only.
+        let product = self.product - mean * (2.0 * self.sum - self.first - self.last)
+            + (n - 1.0) * mean * mean;
+        (square > 0.0).then_some(product / square)
+    }
+}
+
+/// The kind of noise at an averaging factor of a record in memory.
+#[must_use]
+pub fn kind_at(velocity: &[f64], factor: usize, deviation: Deviation) -> Option<NoiseKind> {
+    let mut sums = KindSums::default();
+    velocity.iter().step_by(factor).for_each(|x| sums.push(*x));
+    sums.kind(deviation)
 }

@@ -18,7 +18,7 @@ mod velocity;
 pub use covariance::allan_covariance;
 pub use deviation::{Deviation, Variance, octaves, variances};
 pub use edf::{band, degrees_of_freedom, degrees_of_freedom_discrete};
-pub use kind::{NoiseKind, kind_at};
+pub use kind::{KindSums, NoiseKind, kind_at};
 pub use model::{Coefficient, Coefficients, NoiseFit, fit};
 pub use stream::{FULL_OVERLAP, VarianceStream};
 pub use velocity::Velocity;

@@ -1,7 +1,7 @@
 //! Variances of a record that does not fit into memory.
 
 use super::differences::{second_differences, third_differences, windowed_second_differences};
-use super::{Deviation, Variance};
+use super::{Deviation, KindSums, NoiseKind, Variance};
 
 /// Averaging factor up to which every place is used. Beyond, places are `m/FULL_OVERLAP` readings apart: what that costs
 /// in degrees of freedom is below 10⁻⁴ of them.
@@ -23,7 +23,7 @@ const SMALL_CHUNK: usize = 1 << 12;
 /// stream.push(&[892.0, 809.0, 823.0, 798.0, 671.0]);
 /// stream.push(&[644.0, 883.0, 903.0, 677.0]);
 /// let v = stream.finish();
-/// assert!((v[1].variance.sqrt() - 85.95287).abs() < 1e-5); // NIST SP 1065, table 31
+/// assert!((v[1].0.variance.sqrt() - 85.95287).abs() < 1e-5); // NIST SP 1065, table 31
 /// ```
 #[derive(Debug, Clone)]
 pub struct VarianceStream {
@@ -82,11 +82,7 @@ impl VarianceStream {
     /// Works a level's new points off and hands every other one on.
     fn work(&mut self, at: usize) {
         let deviation = self.deviation;
-        let level = &mut self.levels[at];
-        let handed = level.work(deviation);
-        if at == 0 && level.seen < 2 * FULL_OVERLAP as u64 && handed.is_empty() {
-            return;
-        }
+        let handed = self.levels[at].work(deviation);
         if self.levels.len() == at + 1 {
             self.levels.push(Level::thinned());
         }
@@ -96,9 +92,9 @@ impl VarianceStream {
         }
     }
 
-    /// The variances so far, at octaves.
+    /// The variances so far, at octaves, with the kind of noise that neighbouring averages show.
     #[must_use]
-    pub fn finish(mut self) -> Vec<Variance> {
+    pub fn finish(mut self) -> Vec<(Variance, Option<NoiseKind>)> {
         let mut at = 0;
         while at < self.levels.len() {
             self.work(at);
@@ -122,7 +118,10 @@ impl VarianceStream {
                 // Points are in readings: the interval comes back here.
                 let scale = unit * (factor as f64).powi(2) * *terms as f64;
                 if *terms > 0 {
-                    out.push(Variance { factor, tau_s, terms: *terms, variance: sum / scale });
+                    let v = Variance { factor, tau_s, terms: *terms, variance: sum / scale };
+                    let octave = factor.ilog2() as usize;
+                    let kind = self.levels.get(octave).and_then(|l| l.kinds.kind(self.deviation));
+                    out.push((v, kind));
                 }
             }
         }
@@ -143,6 +142,8 @@ struct Level {
     sums: Vec<(f64, usize)>,
     /// A point that waits for its partner.
     waiting: Option<f64>,
+    /// What kind of noise neighbours a point apart show.
+    kinds: KindSums,
 }
 
 impl Level {
@@ -157,7 +158,15 @@ impl Level {
 
     fn with(factors: Vec<usize>) -> Self {
         let sums = vec![(0.0, 0); factors.len()];
-        Self { points: Vec::new(), done: 0, seen: 0, factors, sums, waiting: None }
+        Self {
+            points: Vec::new(),
+            done: 0,
+            seen: 0,
+            factors,
+            sums,
+            waiting: None,
+            kinds: KindSums::default(),
+        }
     }
 
     fn is_full(&self, chunk: usize) -> bool {
@@ -186,6 +195,7 @@ impl Level {
         }
         let mut handed = Vec::with_capacity((self.points.len() - self.done) / 2 + 1);
         for x in &self.points[self.done..] {
+            self.kinds.push(*x);
             match (self.waiting.take(), deviation) {
                 (None, _) => self.waiting = Some(*x),
                 (Some(before), Deviation::Modified) => handed.push(0.5 * (before + x)),

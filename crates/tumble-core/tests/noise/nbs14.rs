@@ -63,7 +63,7 @@ fn a_stream_is_the_record() {
     for deviation in [Deviation::Allan, Deviation::Modified, Deviation::Hadamard] {
         let mut stream = VarianceStream::new(deviation, 0.02);
         y.chunks(7_919).for_each(|c| stream.push(c));
-        for s in stream.finish() {
+        for (s, _) in stream.finish() {
             let whole = variances(&v, deviation, &[s.factor])[0];
             let off = s.variance / whole.variance - 1.0;
             println!("{deviation:?} {}: {off:.1e}, {} of {}", s.factor, s.terms, whole.terms);
