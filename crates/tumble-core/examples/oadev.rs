@@ -6,7 +6,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use tumble_core::noise::{Deviation, Velocity, VarianceStream, octaves, variances};
+use tumble_core::noise::{Deviation, VarianceStream, Velocity, octaves, variances};
 
 fn main() {
     let n: usize = std::env::args().nth(1).and_then(|a| a.parse().ok()).unwrap_or(10_000_000);

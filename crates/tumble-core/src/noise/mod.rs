@@ -6,6 +6,7 @@
 //!
 //! **Source** NIST SP 1065; IEEE Std 952 and 1554 for the names of the coefficients; metrology section 5.
 
+mod cholesky;
 mod covariance;
 mod deviation;
 mod differences;

@@ -1,9 +1,13 @@
 //! Q, N, B, K and R from Allan variances.
 
 use super::Variance;
+use super::cholesky::Cholesky;
 use super::covariance::allan_covariance;
 use crate::linalg::{Matrix, Triangular};
 use crate::stats::chi_squared_quantile;
+
+/// Factors on a squared coefficient at which its uncertainty is computed, for its interval.
+const AROUND: [f64; 3] = [0.25, 1.0, 4.0];
 
 /// Rounds of weights and fit; the weights hardly change after the third.
 const ROUNDS: usize = 6;
@@ -78,8 +82,9 @@ pub struct NoiseFit {
 /// **Model** generalized least squares; of all sets of coefficients the best with none negative (31 sets are tried).
 /// The covariance is that of the fitted model itself, found in a few rounds.
 ///
-/// **Uncertainty** squares of coefficients are sums of squares, so their interval is that of `χ²` with `2 c²/u²(c)`
-/// degrees of freedom (Satterthwaite). It holds what the model holds: other kinds of noise are not in it.
+/// **Uncertainty** what was found of a squared coefficient `c` is distributed as `c χ²/ν`, `ν = 2 c²/u²(c)`
+/// (Satterthwaite). The interval holds the true sizes for which what was found is no surprise; `u` grows with the size.
+/// It holds what the model holds: other kinds of noise are not in it.
 ///
 /// `None` with fewer than two variances, or where all are zero.
 #[must_use]
@@ -94,13 +99,16 @@ pub fn fit(variances: &[Variance], interval_s: f64, level: f64) -> Option<NoiseF
     for (i, v) in variances.iter().enumerate() {
         c[(i, i)] = v.variance.powi(2) * 2.0 * v.factor as f64 / v.terms as f64;
     }
-    let mut best = best_subset(variances, &c)?;
+    let mut sets = feasible(variances, &c)?;
     for _ in 0..ROUNDS {
-        c = allan_covariance(variances, &Coefficients::from_order(best.values), interval_s);
-        best = best_subset(variances, &c)?;
+        c = allan_covariance(variances, &Coefficients::from_order(sets[0].values), interval_s);
+        sets = feasible(variances, &c)?;
     }
+    let best = &sets[0];
+    let enough = chi_squared_quantile(level, 1.0)?;
     let squares = Coefficients::from_order(best.values);
-    let coefficients = core::array::from_fn(|i| coefficient(variances, &c, &best, i, level));
+    let coefficients =
+        core::array::from_fn(|i| coefficient(variances, &c, &best, i, interval_s, level));
     Some(NoiseFit {
         coefficients,
         squares,
@@ -114,16 +122,21 @@ struct Subset {
     set: [bool; 5],
     values: [f64; 5],
     uncertainties: [f64; 5],
+    /// How each variance moves each coefficient.
+    weights: [Vec<f64>; 5],
     chi_squared: f64,
 }
 
-fn best_subset(variances: &[Variance], covariance: &Matrix) -> Option<Subset> {
+/// All sets of coefficients that fit with none negative, the best first.
+fn feasible(variances: &[Variance], covariance: &Matrix) -> Option<Vec<Subset>> {
     let whiten = Cholesky::of(covariance)?;
-    (1u32..32)
+    let mut all: Vec<Subset> = (1u32..32)
         .map(|bits| core::array::from_fn(|i| bits >> i & 1 == 1))
         .filter_map(|set| subset(variances, &whiten, set))
         .filter(|s| s.values.iter().all(|v| *v >= 0.0))
-        .min_by(|a, b| a.chi_squared.total_cmp(&b.chi_squared))
+        .collect();
+    all.sort_by(|a, b| a.chi_squared.total_cmp(&b.chi_squared));
+    (!all.is_empty()).then_some(all)
 }
 
 fn subset(variances: &[Variance], whiten: &Cholesky, set: [bool; 5]) -> Option<Subset> {
@@ -147,11 +160,16 @@ fn subset(variances: &[Variance], whiten: &Cholesky, set: [bool; 5]) -> Option<S
     }
     let (solution, unit) = (triangle.solve().ok()?, triangle.unit_covariance().ok()?);
     let (mut values, mut uncertainties) = ([0.0; 5], [0.0; 5]);
+    let mut weights = [const { Vec::new() }; 5];
     for (k, i) in places.iter().enumerate() {
         values[*i] = solution[k];
         uncertainties[*i] = unit[(k, k)].sqrt();
+        let whitened: Vec<f64> =
+            (0..y.len()).map(|j| (0..p).map(|l| unit[(k, l)] * x[l][j]).sum()).collect();
+        weights[*i] = whiten.solve_upper(&whitened);
     }
-    Some(Subset { set, values, uncertainties, chi_squared: triangle.residual_sum_of_squares() })
+    let chi_squared = triangle.residual_sum_of_squares();
+    Some(Subset { set, values, uncertainties, weights, chi_squared })
 }
 
 /// A coefficient from its square.
@@ -160,20 +178,16 @@ fn coefficient(
     covariance: &Matrix,
     best: &Subset,
     i: usize,
+    interval_s: f64,
     level: f64,
 ) -> Coefficient {
     let (c, u) = (best.values[i], best.uncertainties[i]);
     if best.set[i] && c > 0.0 {
-        let dof = 2.0 * (c / u).powi(2);
-        let at = |p: f64| chi_squared_quantile(p, dof).map(|q| (c * dof / q).sqrt());
         let value = c.sqrt();
-        let low = at(0.5 * (1.0 + level)).unwrap_or(0.0);
-        let high = at(0.5 * (1.0 - level)).unwrap_or(f64::INFINITY);
-        return Coefficient {
-            value,
-            standard_uncertainty: Some(u / (2.0 * value)),
-            interval: [low, high],
-        };
+        let spread = Spread::of(variances, best, i, interval_s);
+        let tail = 0.5 * (1.0 - level);
+        let interval = [spread.bound(c, 1.0 - tail).sqrt(), spread.bound(c, tail).sqrt()];
+        return Coefficient { value, standard_uncertainty: Some(u / (2.0 * value)), interval };
     }
     // Left out: what it could be if it were let in, from its uncertainty beside the others.
     let mut set = best.set;
@@ -189,47 +203,56 @@ fn coefficient(
     }
 }
 
-/// `C = L Lᵀ`.
-struct Cholesky {
-    lower: Matrix,
+/// Relative standard uncertainty of a squared coefficient for several true sizes of it.
+struct Spread {
+    /// `ln` of the size and of the relative uncertainty there.
+    at: [(f64, f64); 3],
 }
 
-impl Cholesky {
-    fn of(c: &Matrix) -> Option<Self> {
-        let n = c.rows();
-        let mut l = Matrix::zeros(n, n);
-        for j in 0..n {
-            let mut d = c[(j, j)];
-            for k in 0..j {
-                d -= l[(j, k)] * l[(j, k)];
-            }
-            // Thinned sums leave a covariance that is not quite one: held at a thousandth of the diagonal.
-            let d = d.max(1e-3 * c[(j, j)]);
-            if !(d > 0.0 && d.is_finite()) {
-                return None;
-            }
-            l[(j, j)] = d.sqrt();
-            for i in j + 1..n {
-                let mut s = c[(i, j)];
-                for k in 0..j {
-                    s -= l[(i, k)] * l[(j, k)];
+impl Spread {
+    fn of(variances: &[Variance], best: &Subset, i: usize, interval_s: f64) -> Self {
+        let w = &best.weights[i];
+        let at = AROUND.map(|factor| {
+            let mut c = best.values;
+            c[i] *= factor;
+            let covariance = allan_covariance(variances, &Coefficients::from_order(c), interval_s);
+            let mut u2 = 0.0;
+            for a in 0..w.len() {
+                for b in 0..w.len() {
+                    u2 += w[a] * w[b] * covariance[(a, b)];
                 }
-                l[(i, j)] = s / l[(j, j)];
             }
-        }
-        Some(Self { lower: l })
+            (c[i].ln(), 0.5 * u2.max(f64::MIN_POSITIVE).ln() - c[i].ln())
+        });
+        Self { at }
     }
 
-    /// `L⁻¹ y`.
-    fn solve_lower(&self, y: &[f64]) -> Vec<f64> {
-        let mut out = y.to_vec();
-        for i in 0..out.len() {
-            for k in 0..i {
-                let known = out[k];
-                out[i] -= self.lower[(i, k)] * known;
+    /// Relative uncertainty at a size: a power between the sizes tried, and beyond.
+    fn relative(&self, size: f64) -> f64 {
+        let x = size.ln();
+        let [a, b, c] = self.at;
+        let (p, q) = if x < b.0 { (a, b) } else { (b, c) };
+        (p.1 + (q.1 - p.1) * (x - p.0) / (q.0 - p.0)).exp()
+    }
+
+    /// The true size of which what was found is the `p` quantile: found/size is `χ²/ν` with `ν = 2/u²_rel`.
+    fn bound(&self, found: f64, p: f64) -> f64 {
+        let excess = |size: f64| {
+            let dof = 2.0 / self.relative(size).powi(2);
+            match chi_squared_quantile(p, dof.clamp(1e-3, 1e9)) {
+                Some(q) => size * q / dof - found,
+                None => 0.0,
             }
-            out[i] /= self.lower[(i, i)];
+        };
+        let (mut low, mut high) = (found * 1e-6, found * 1e6);
+        for _ in 0..80 {
+            let middle = (low * high).sqrt();
+            if excess(middle) > 0.0 {
+                high = middle;
+            } else {
+                low = middle;
+            }
         }
-        out
+        (low * high).sqrt()
     }
 }
