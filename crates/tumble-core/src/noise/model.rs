@@ -107,8 +107,15 @@ pub fn fit(variances: &[Variance], interval_s: f64, level: f64) -> Option<NoiseF
     let best = &sets[0];
     let enough = chi_squared_quantile(level, 1.0)?;
     let squares = Coefficients::from_order(best.values);
-    let coefficients =
-        core::array::from_fn(|i| coefficient(variances, &c, &best, i, interval_s, level));
+    let coefficients = core::array::from_fn(|i| {
+        let found = coefficient(variances, &c, best, i, interval_s, level);
+        // Nothing is lost without it: then it may be nothing.
+        let without = sets.iter().find(|s| !s.set[i]).map_or(f64::INFINITY, |s| s.chi_squared);
+        match without - best.chi_squared < enough {
+            true => Coefficient { interval: [0.0, found.interval[1]], ..found },
+            false => found,
+        }
+    });
     Some(NoiseFit {
         coefficients,
         squares,
