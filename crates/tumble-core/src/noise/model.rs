@@ -196,18 +196,50 @@ fn coefficient(
         let interval = [spread.bound(c, 1.0 - tail).sqrt(), spread.bound(c, tail).sqrt()];
         return Coefficient { value, standard_uncertainty: Some(u / (2.0 * value)), interval };
     }
-    // Left out: what it could be if it were let in, from its uncertainty beside the others.
-    let mut set = best.set;
-    set[i] = true;
-    let bound = Cholesky::of(covariance).and_then(|w| subset(variances, &w, set)).map(|s| {
-        let one_sided = crate::stats::normal_quantile(level);
-        (s.values[i] + one_sided * s.uncertainties[i]).max(0.0).sqrt()
-    });
     Coefficient {
         value: 0.0,
         standard_uncertainty: None,
-        interval: [0.0, bound.unwrap_or(f64::INFINITY)],
+        interval: [0.0, bound_of_absent(variances, covariance, best, i, interval_s, level)],
     }
+}
+
+/// Rounds in which the bound and the uncertainty at the bound are brought together.
+const BOUND_ROUNDS: usize = 4;
+
+/// Largest value of a coefficient that is left out: the size at which what would be found of it beside the others is
+/// just no surprise. Its uncertainty grows with the size.
+fn bound_of_absent(
+    variances: &[Variance],
+    covariance: &Matrix,
+    best: &Subset,
+    i: usize,
+    interval_s: f64,
+    level: f64,
+) -> f64 {
+    let mut set = best.set;
+    set[i] = true;
+    let let_in = Cholesky::of(covariance).and_then(|w| subset(variances, &w, set));
+    let Some(found) = let_in else { return f64::INFINITY };
+    let factor = crate::stats::normal_quantile(0.5 * (1.0 + level));
+    let mut size = (found.values[i] + factor * found.uncertainties[i]).max(0.0);
+    for _ in 0..BOUND_ROUNDS {
+        let mut c = best.values;
+        c[i] = size;
+        let there = allan_covariance(variances, &Coefficients::from_order(c), interval_s);
+        size = (found.values[i] + factor * variance_of(&found.weights[i], &there).sqrt()).max(0.0);
+    }
+    size.sqrt()
+}
+
+/// `wᵀ C w`.
+fn variance_of(w: &[f64], c: &Matrix) -> f64 {
+    let mut sum = 0.0;
+    for a in 0..w.len() {
+        for b in 0..w.len() {
+            sum += w[a] * w[b] * c[(a, b)];
+        }
+    }
+    sum.max(f64::MIN_POSITIVE)
 }
 
 /// Relative standard uncertainty of a squared coefficient for several true sizes of it.
@@ -223,13 +255,8 @@ impl Spread {
             let mut c = best.values;
             c[i] *= factor;
             let covariance = allan_covariance(variances, &Coefficients::from_order(c), interval_s);
-            let mut u2 = 0.0;
-            for a in 0..w.len() {
-                for b in 0..w.len() {
-                    u2 += w[a] * w[b] * covariance[(a, b)];
-                }
-            }
-            (c[i].ln(), 0.5 * u2.max(f64::MIN_POSITIVE).ln() - c[i].ln())
+            let u2 = variance_of(w, &covariance);
+            (c[i].ln(), 0.5 * u2.ln() - c[i].ln())
         });
         Self { at }
     }
