@@ -6,7 +6,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use tumble_core::noise::{Deviation, VarianceStream, Velocity, octaves, variances};
+use tumble_core::noise::{Deviation, VarianceStream, Velocity, allan_octaves, octaves, variances};
 
 fn main() {
     let n: usize = std::env::args().nth(1).and_then(|a| a.parse().ok()).unwrap_or(10_000_000);
@@ -28,12 +28,21 @@ fn main() {
         let found = black_box(variances(&velocity, Deviation::Allan, &octaves(n)));
         let whole = start.elapsed();
         let start = Instant::now();
+        let direct = black_box(allan_octaves(black_box(&readings), 1.0));
+        let at_octaves = start.elapsed();
+        for (a, b) in direct.iter().zip(&found) {
+            assert!(
+                (a.variance / b.variance - 1.0).abs() < 1e-9 && a.terms == b.terms,
+                "{a:?} {b:?}"
+            );
+        }
+        let start = Instant::now();
         let mut stream = VarianceStream::new(Deviation::Allan, 1.0);
         readings.chunks(1 << 16).for_each(|c| stream.push(c));
         let streamed = black_box(stream.finish());
         let bounded = start.elapsed();
         println!(
-            "round {round}: sum {sum:.1?}, prefix sum {prefix:.1?}, oadev {whole:.1?} ({} octaves), stream {bounded:.1?} ({})",
+            "round {round}: sum {sum:.1?}, prefix sum {prefix:.1?}, oadev {whole:.1?} ({} octaves), octaves {at_octaves:.1?}, stream {bounded:.1?} ({})",
             found.len(),
             streamed.len()
         );

@@ -1,25 +1,13 @@
 //! Sums of squared differences: the loops that everything else waits for.
 
-/// Independent partial sums: enough to keep two lanes of two adders busy.
-const LANES: usize = 8;
+use super::wide::one;
+
 /// Points that one pass over all averaging factors works on: they stay in the nearest cache.
 const BLOCK: usize = 2048;
 
 /// `Σ (x[i] − 2 x[i+m] + x[i+2m])²` over `count` places from `from` on.
 fn second(x: &[f64], m: usize, from: usize, count: usize) -> f64 {
-    let (a, b, c) = (&x[from..][..count], &x[from + m..][..count], &x[from + 2 * m..][..count]);
-    let mut sums = [0.0; LANES];
-    let (mut a8, mut b8, mut c8) =
-        (a.chunks_exact(LANES), b.chunks_exact(LANES), c.chunks_exact(LANES));
-    for ((a, b), c) in (&mut a8).zip(&mut b8).zip(&mut c8) {
-        for l in 0..LANES {
-            let d = (a[l] - b[l]) + (c[l] - b[l]);
-            sums[l] += d * d;
-        }
-    }
-    let rest = a8.remainder().iter().zip(b8.remainder()).zip(c8.remainder());
-    let tail: f64 = rest.map(|((a, b), c)| ((a - b) + (c - b)).powi(2)).sum();
-    sums.iter().sum::<f64>() + tail
+    one([&x[from..][..count], &x[from + m..][..count], &x[from + 2 * m..][..count]])
 }
 
 /// Sums of squared second differences for several averaging factors in one pass over the points.

@@ -13,13 +13,16 @@ mod differences;
 mod edf;
 mod kind;
 mod model;
+mod octave;
 mod stream;
 mod velocity;
+mod wide;
 
 pub use covariance::allan_covariance;
 pub use deviation::{Deviation, Variance, octaves, variances};
 pub use edf::{band, degrees_of_freedom, degrees_of_freedom_discrete};
 pub use kind::{KindSums, NoiseKind, kind_at};
 pub use model::{Coefficient, Coefficients, NoiseFit, fit};
+pub use octave::allan_octaves;
 pub use stream::{FULL_OVERLAP, VarianceStream};
 pub use velocity::Velocity;
