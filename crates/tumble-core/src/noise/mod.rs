@@ -18,7 +18,7 @@ mod stream;
 mod velocity;
 mod wide;
 
-pub use covariance::allan_covariance;
+pub use covariance::AllanCovariance;
 pub use deviation::{Deviation, Variance, octaves, variances};
 pub use edf::{band, degrees_of_freedom, degrees_of_freedom_discrete};
 pub use kind::{KindSums, NoiseKind, kind_at};

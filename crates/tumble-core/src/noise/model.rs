@@ -2,7 +2,7 @@
 
 use super::Variance;
 use super::cholesky::Cholesky;
-use super::covariance::allan_covariance;
+use super::covariance::AllanCovariance;
 use crate::linalg::{Matrix, Triangular};
 use crate::stats::chi_squared_quantile;
 
@@ -100,15 +100,16 @@ pub fn fit(variances: &[Variance], interval_s: f64, level: f64) -> Option<NoiseF
         c[(i, i)] = v.variance.powi(2) * 2.0 * v.factor as f64 / v.terms as f64;
     }
     let mut sets = feasible(variances, &c)?;
+    let family = AllanCovariance::of(variances, interval_s);
     for _ in 0..ROUNDS {
-        c = allan_covariance(variances, &Coefficients::from_order(sets[0].values), interval_s);
+        c = family.at(&Coefficients::from_order(sets[0].values));
         sets = feasible(variances, &c)?;
     }
     let best = &sets[0];
     let enough = chi_squared_quantile(level, 1.0)?;
     let squares = Coefficients::from_order(best.values);
     let coefficients = core::array::from_fn(|i| {
-        let found = coefficient(variances, &c, best, i, interval_s, level);
+        let found = coefficient(variances, &family, &c, best, i, level);
         // Nothing is lost without it: then it may be nothing.
         let without = sets.iter().find(|s| !s.set[i]).map_or(f64::INFINITY, |s| s.chi_squared);
         match without - best.chi_squared < enough {
@@ -182,16 +183,16 @@ fn subset(variances: &[Variance], whiten: &Cholesky, set: [bool; 5]) -> Option<S
 /// A coefficient from its square.
 fn coefficient(
     variances: &[Variance],
+    family: &AllanCovariance,
     covariance: &Matrix,
     best: &Subset,
     i: usize,
-    interval_s: f64,
     level: f64,
 ) -> Coefficient {
     let (c, u) = (best.values[i], best.uncertainties[i]);
     if best.set[i] && c > 0.0 {
         let value = c.sqrt();
-        let spread = Spread::of(variances, best, i, interval_s);
+        let spread = Spread::of(family, best, i);
         let tail = 0.5 * (1.0 - level);
         let interval = [spread.bound(c, 1.0 - tail).sqrt(), spread.bound(c, tail).sqrt()];
         return Coefficient { value, standard_uncertainty: Some(u / (2.0 * value)), interval };
@@ -199,7 +200,7 @@ fn coefficient(
     Coefficient {
         value: 0.0,
         standard_uncertainty: None,
-        interval: [0.0, bound_of_absent(variances, covariance, best, i, interval_s, level)],
+        interval: [0.0, bound_of_absent(variances, family, covariance, best, i, level)],
     }
 }
 
@@ -210,10 +211,10 @@ const BOUND_ROUNDS: usize = 4;
 /// just no surprise. Its uncertainty grows with the size.
 fn bound_of_absent(
     variances: &[Variance],
+    family: &AllanCovariance,
     covariance: &Matrix,
     best: &Subset,
     i: usize,
-    interval_s: f64,
     level: f64,
 ) -> f64 {
     let mut set = best.set;
@@ -225,7 +226,7 @@ fn bound_of_absent(
     for _ in 0..BOUND_ROUNDS {
         let mut c = best.values;
         c[i] = size;
-        let there = allan_covariance(variances, &Coefficients::from_order(c), interval_s);
+        let there = family.at(&Coefficients::from_order(c));
         size = (found.values[i] + factor * variance_of(&found.weights[i], &there).sqrt()).max(0.0);
     }
     size.sqrt()
@@ -249,12 +250,12 @@ struct Spread {
 }
 
 impl Spread {
-    fn of(variances: &[Variance], best: &Subset, i: usize, interval_s: f64) -> Self {
+    fn of(family: &AllanCovariance, best: &Subset, i: usize) -> Self {
         let w = &best.weights[i];
         let at = AROUND.map(|factor| {
             let mut c = best.values;
             c[i] *= factor;
-            let covariance = allan_covariance(variances, &Coefficients::from_order(c), interval_s);
+            let covariance = family.at(&Coefficients::from_order(c));
             let u2 = variance_of(w, &covariance);
             (c[i].ln(), 0.5 * u2.ln() - c[i].ln())
         });
