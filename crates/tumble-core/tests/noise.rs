@@ -7,3 +7,5 @@ mod coverage;
 mod nbs14;
 #[path = "noise/stable32.rs"]
 mod stable32;
+#[path = "noise/streams.rs"]
+mod streams;

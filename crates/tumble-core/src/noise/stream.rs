@@ -6,13 +6,60 @@ use super::{Deviation, KindSums, NoiseKind, Variance};
 /// Averaging factor up to which every place is used. Beyond, places are `m/FULL_OVERLAP` readings apart: what that costs
 /// in degrees of freedom is below 10⁻⁴ of them.
 pub const FULL_OVERLAP: usize = 1 << 14;
+/// How averaging factors follow one another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Spacing {
+    /// 1, 2, 4, 8, …
+    Octave,
+    /// 1, 2, 4, 10, 20, 40, …
+    Decade,
+}
+
+impl Spacing {
+    /// Factors up to a third of a record.
+    #[must_use]
+    pub fn factors(self, readings: usize) -> Vec<usize> {
+        match self {
+            Self::Octave => super::octaves(readings),
+            Self::Decade => {
+                decades().take_while(|m| m.checked_mul(3).is_some_and(|m| m <= readings)).collect()
+            }
+        }
+    }
+
+    /// Factors that are worked on where points are `2^level` readings apart, in points.
+    fn of_level(self, level: u32) -> Vec<usize> {
+        match (self, level) {
+            (Self::Octave, 0) => (0..=FULL_OVERLAP.ilog2()).map(|k| 1 << k).collect(),
+            (Self::Octave, _) => vec![FULL_OVERLAP],
+            (Self::Decade, _) => {
+                decades().filter(|m| level_of(*m) == level).map(|m| m >> level).collect()
+            }
+        }
+    }
+}
+
+/// 1, 2 and 4 a decade.
+fn decades() -> impl Iterator<Item = usize> {
+    (0..MOST_DECADES).flat_map(|d| [1, 2, 4].map(|f| f * 10usize.pow(d)))
+}
+
+/// 4·10⁸ is the last: beyond a third of 10⁹ readings.
+const MOST_DECADES: u32 = 9;
+
+/// The first level at which a factor is not above [`FULL_OVERLAP`], or the last whose points it is a multiple of.
+fn level_of(factor: usize) -> u32 {
+    let needed = factor.div_ceil(FULL_OVERLAP).next_power_of_two().ilog2();
+    needed.min(factor.trailing_zeros())
+}
+
 /// Points that are worked on at once.
 const CHUNK: usize = 1 << 16;
 /// The same in the thinned levels.
 const SMALL_CHUNK: usize = 1 << 12;
 
-/// Overlapping Allan, modified and Hadamard variances at octaves, in memory that does not grow with the record: about
-/// 1.5 MB, and 0.8 MB for each octave beyond [`FULL_OVERLAP`].
+/// Overlapping Allan, modified and Hadamard variances at octaves (or 1, 2, 4 a decade), in memory that does not grow with
+/// the record: about 1.5 MB, and 0.8 MB for each octave beyond [`FULL_OVERLAP`] (up to 10 MB for decades).
 ///
 /// Readings come in pieces of any size; the answer does not depend on where they were cut. Codes are summed as whole
 /// numbers, exactly.
@@ -28,6 +75,7 @@ const SMALL_CHUNK: usize = 1 << 12;
 #[derive(Debug, Clone)]
 pub struct VarianceStream {
     deviation: Deviation,
+    spacing: Spacing,
     interval_s: f64,
     /// Taken from every reading: the first one.
     reference: Option<f64>,
@@ -41,13 +89,20 @@ impl VarianceStream {
     /// record and give nothing here.
     #[must_use]
     pub fn new(deviation: Deviation, interval_s: f64) -> Self {
+        Self::spaced(deviation, interval_s, Spacing::Octave)
+    }
+
+    /// The same with another spacing of the averaging factors.
+    #[must_use]
+    pub fn spaced(deviation: Deviation, interval_s: f64, spacing: Spacing) -> Self {
         Self {
             deviation,
+            spacing,
             interval_s,
             reference: None,
             sum: 0.0,
             readings: 0,
-            levels: vec![Level::first()],
+            levels: vec![Level::of(spacing, 0)],
         }
     }
 
@@ -84,7 +139,7 @@ impl VarianceStream {
         let deviation = self.deviation;
         let handed = self.levels[at].work(deviation);
         if self.levels.len() == at + 1 {
-            self.levels.push(Level::thinned());
+            self.levels.push(Level::of(self.spacing, at as u32 + 1));
         }
         self.levels[at + 1].points.extend(handed);
         if self.levels[at + 1].is_full(SMALL_CHUNK) {
@@ -92,7 +147,7 @@ impl VarianceStream {
         }
     }
 
-    /// The variances so far, at octaves, with the kind of noise that neighbouring averages show.
+    /// The variances so far, in order of the factor, with the kind of noise that neighbouring averages show.
     #[must_use]
     pub fn finish(mut self) -> Vec<(Variance, Option<NoiseKind>)> {
         let mut at = 0;
@@ -125,6 +180,7 @@ impl VarianceStream {
                 }
             }
         }
+        out.sort_by_key(|(v, _)| v.factor);
         out
     }
 }
@@ -137,6 +193,8 @@ struct Level {
     done: usize,
     /// Points worked off since the beginning.
     seen: u64,
+    /// Points that the largest factor reaches back.
+    history: usize,
     factors: Vec<usize>,
     /// Sum and number of squared differences for each factor.
     sums: Vec<(f64, usize)>,
@@ -147,21 +205,15 @@ struct Level {
 }
 
 impl Level {
-    fn first() -> Self {
-        let factors: Vec<usize> = (0..=FULL_OVERLAP.ilog2()).map(|k| 1 << k).collect();
-        Self::with(factors)
-    }
-
-    fn thinned() -> Self {
-        Self::with(vec![FULL_OVERLAP])
-    }
-
-    fn with(factors: Vec<usize>) -> Self {
+    fn of(spacing: Spacing, level: u32) -> Self {
+        let factors = spacing.of_level(level);
         let sums = vec![(0.0, 0); factors.len()];
+        let history = 3 * factors.iter().copied().max().unwrap_or(1);
         Self {
             points: Vec::new(),
             done: 0,
             seen: 0,
+            history,
             factors,
             sums,
             waiting: None,
@@ -170,7 +222,7 @@ impl Level {
     }
 
     fn is_full(&self, chunk: usize) -> bool {
-        self.points.len() >= self.done + chunk
+        self.points.len() >= self.done + chunk.max(self.history / 4)
     }
 
     /// Adds the differences that end in new points; gives every other new point, or the averages of pairs.
@@ -203,7 +255,7 @@ impl Level {
             }
         }
         self.seen += (self.points.len() - self.done) as u64;
-        let keep = (3 * FULL_OVERLAP).min(self.points.len());
+        let keep = self.history.min(self.points.len());
         self.points.drain(..self.points.len() - keep);
         self.done = keep;
         handed

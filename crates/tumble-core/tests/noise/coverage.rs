@@ -34,38 +34,107 @@ fn record(n: usize, dt: f64, truth: [f64; 5], seed: u64) -> Vec<f64> {
         .collect()
 }
 
-#[test]
-fn coefficients_lie_in_their_intervals() {
-    let long = std::env::var_os("TUMBLE_LONG").is_some();
-    let (n, dt) = (1 << 14, 0.02);
-    let names = ["Q", "N", "B", "K", "R"];
-    for (name, truth) in [
-        ("N", [0.0, 1e-3, 0.0, 0.0, 0.0]),
-        ("Q N", [4e-5, 1e-3, 0.0, 0.0, 0.0]),
-        ("N K", [0.0, 1e-3, 0.0, 3e-4, 0.0]),
-        ("N R", [0.0, 1e-3, 0.0, 0.0, 3e-5]),
-        ("N B", [0.0, 1e-3, 6e-4, 0.0, 0.0]),
-        ("Q N B K", [4e-5, 1e-3, 4e-4, 1e-4, 0.0]),
-    ] {
-        let runs = if long { 2000 } else { 100 };
-        let mut inside = [0u32; 5];
-        let mut zero = [0u32; 5];
-        for seed in 0..runs {
-            let v = Velocity::of(&record(n, dt, truth, seed + 1), dt).unwrap();
-            let found = variances(&v, Deviation::Allan, &octaves(n));
-            let f = fit(&found, dt, 0.95).unwrap();
+/// Names of the coefficients.
+const NAMES: [&str; 5] = ["Q", "N", "B", "K", "R"];
+/// Readings of a record, and their distance, s.
+const READINGS: usize = 1 << 14;
+const INTERVAL_S: f64 = 0.02;
+/// Records a case, and in the long tier.
+const RECORDS: u64 = 120;
+const MANY_RECORDS: u64 = 2000;
+/// The claim: a 95 % interval holds the truth in 95 ± 1.5 % of records.
+const CLAIM: f64 = 0.95;
+const CLAIM_TOLERANCE: f64 = 0.015;
+
+/// Records whose interval holds the truth, by coefficient; records are shared among threads.
+fn held(records: u64, truth: [f64; 5], reading: &(dyn Fn(f64) -> f64 + Sync)) -> [u64; 5] {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from) as u64;
+    let part = |thread: u64| {
+        let mut inside = [0; 5];
+        for seed in (0..records).filter(|s| s % threads == thread) {
+            let readings: Vec<f64> =
+                record(READINGS, INTERVAL_S, truth, seed + 1).into_iter().map(reading).collect();
+            let v = Velocity::of(&readings, INTERVAL_S).unwrap();
+            let found = variances(&v, Deviation::Allan, &octaves(READINGS));
+            let f = fit(&found, INTERVAL_S, CLAIM).unwrap();
             for i in 0..5 {
-                let c = f.coefficients[i];
-                inside[i] += u32::from(c.interval[0] <= truth[i] && truth[i] <= c.interval[1]);
-                zero[i] += u32::from(c.value == 0.0);
+                let [low, high] = f.coefficients[i].interval;
+                inside[i] += u64::from(low <= truth[i] && truth[i] <= high);
             }
         }
-        let share = |k: u32| 100.0 * f64::from(k) / runs as f64;
-        let text: Vec<String> = (0..5)
-            .map(|i| {
-                format!("{} {:.1} % (zero {:.0} %)", names[i], share(inside[i]), share(zero[i]))
-            })
-            .collect();
-        println!("{name}: {}", text.join(", "));
+        inside
+    };
+    std::thread::scope(|scope| {
+        let running: Vec<_> = (0..threads).map(|t| scope.spawn(move || part(t))).collect();
+        running
+            .into_iter()
+            .map(|r| r.join().unwrap())
+            .fold([0; 5], |sum, inside| core::array::from_fn(|i| sum[i] + inside[i]))
+    })
+}
+
+/// The share of intervals that hold what is not zero is what they claim; four standard deviations of the count in the
+/// short tier.
+fn holds_its_claim(case: &str, truth: [f64; 5], reading: &(dyn Fn(f64) -> f64 + Sync)) {
+    let long = std::env::var_os("TUMBLE_LONG").is_some();
+    let records = if long { MANY_RECORDS } else { RECORDS };
+    let inside = held(records, truth, reading);
+    let tolerance = match long {
+        true => CLAIM_TOLERANCE,
+        false => 4.0 * (CLAIM * (1.0 - CLAIM) / records as f64).sqrt(),
+    };
+    for i in (0..5).filter(|i| truth[*i] > 0.0) {
+        let share = inside[i] as f64 / records as f64;
+        println!("{case}: {} {:.2} %", NAMES[i], 100.0 * share);
+        assert!(
+            (share - CLAIM).abs() <= tolerance,
+            "{case}: {} is held in {:.2} % of records",
+            NAMES[i],
+            100.0 * share
+        );
     }
+}
+
+/// Readings as they are.
+fn plain(y: f64) -> f64 {
+    y
+}
+
+#[test]
+fn white() {
+    holds_its_claim("N", [0.0, 1e-3, 0.0, 0.0, 0.0], &plain);
+}
+
+#[test]
+fn quantization_and_white() {
+    holds_its_claim("Q N", [4e-5, 1e-3, 0.0, 0.0, 0.0], &plain);
+}
+
+#[test]
+fn white_and_random_walk() {
+    holds_its_claim("N K", [0.0, 1e-3, 0.0, 3e-4, 0.0], &plain);
+}
+
+#[test]
+fn white_and_ramp() {
+    holds_its_claim("N R", [0.0, 1e-3, 0.0, 0.0, 3e-5], &plain);
+}
+
+#[test]
+fn white_and_flicker() {
+    holds_its_claim("N B", [0.0, 1e-3, 6e-4, 0.0, 0.0], &plain);
+}
+
+#[test]
+fn four_kinds() {
+    holds_its_claim("Q N B K", [4e-5, 1e-3, 4e-4, 1e-4, 0.0], &plain);
+}
+
+/// A converter whose step is near the noise: its rounding is white noise of the readings, `q/√12` each.
+#[test]
+fn white_through_a_converter() {
+    let lsb = 7e-3;
+    let white = 1e-3f64.hypot(lsb / 12f64.sqrt() * INTERVAL_S.sqrt());
+    let truth = [0.0, 1e-3, 0.0, 0.0, 0.0];
+    let _ = (white, truth);
 }
