@@ -345,6 +345,29 @@ pub const SHEET_UNITS: [SheetUnit; 8] = [
     SheetUnit { coefficient: 4, factor: 3600.0 / MICRO_G, unit: "ug/h", meaning: "" },
 ];
 
+impl SheetUnit {
+    /// A value in SI in this unit.
+    #[must_use]
+    pub fn of(&self, si: f64) -> f64 {
+        si * self.factor
+    }
+}
+
+impl NoiseFit {
+    /// The fitted deviation at times spread evenly on a logarithmic scale, with what each coefficient adds to it.
+    #[must_use]
+    pub fn curve(&self, from_s: f64, to_s: f64, count: usize) -> Vec<(f64, f64, [f64; 5])> {
+        let steps = count.max(2) - 1;
+        let at = |k: usize| from_s * (to_s / from_s).powf(k as f64 / steps as f64);
+        (0..=steps)
+            .map(|k| {
+                let parts = self.squares.parts(at(k));
+                (at(k), parts.iter().sum::<f64>().sqrt(), parts.map(f64::sqrt))
+            })
+            .collect()
+    }
+}
+
 impl Coefficients {
     /// What each coefficient adds to `σ²(τ)`.
     #[must_use]
