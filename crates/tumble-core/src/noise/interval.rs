@@ -27,6 +27,10 @@ pub(super) struct Trial<'a> {
     pub which: usize,
     /// Probability of each tail.
     pub tail: f64,
+    /// How each variance moves the coefficient in the set that was found (with it), and what that set gives for it.
+    pub weights: Vec<f64>,
+    /// See above; may be negative.
+    pub let_in: f64,
 }
 
 impl Trial<'_> {
@@ -36,6 +40,9 @@ impl Trial<'_> {
     /// whole model. `T`, the growth of `χ²` against the best fit under that covariance, is the square of a standardized
     /// deviation of what was found from `c`. Its quantiles are those of a `χ²_ν` of the same skewness: of the
     /// coefficient's own noise, `2 v²/(c u³)` with `v` the part of the variance `u²` that comes with `c`.
+    ///
+    /// Coefficients that are zero and cannot be found negative take their part from the others; sizes that are no surprise
+    /// to the set that was found, with its weights, are therefore in the interval as well.
     pub fn interval(&self, seen: f64) -> [f64; 2] {
         let found = self.found[self.which];
         let scale = if found > 0.0 { found } else { seen };
@@ -65,7 +72,18 @@ impl Trial<'_> {
 
     /// Whether what was found is no surprise at a true size.
     fn is_likely(&self, size: f64) -> bool {
-        self.surprise(size).unwrap_or(f64::INFINITY) <= 1.0
+        let little = |s: Option<f64>| s.is_some_and(|s| s <= 1.0);
+        little(self.surprise(size)) || little(self.surprise_of_set(size))
+    }
+
+    /// The same for the set that was found alone.
+    fn surprise_of_set(&self, size: f64) -> Option<f64> {
+        let mut model = self.found;
+        model[self.which] = size;
+        let p = if self.let_in > size { 1.0 - self.tail } else { self.tail };
+        let u2 = variance_of(&self.weights, &self.covariance(model));
+        let z = self.quantile(&self.weights, model, p)?;
+        Some((self.let_in - size).powi(2) / (u2 * z * z))
     }
 
     /// `T` over the square of its quantile.
@@ -85,24 +103,17 @@ impl Trial<'_> {
         let mut set = held.set;
         set[i] = true;
         let p = if free.values[i] > size { 1.0 - self.tail } else { self.tail };
-        let z = self.quantile(&problem, set, held.values, p)?;
+        let z = self.quantile(&problem.weights(set, i)?, held.values, p)?;
         Some(growth / (z * z))
     }
 
     /// Quantile of the standardized deviation.
-    fn quantile(
-        &self,
-        problem: &Problem,
-        set: [bool; COUNT],
-        model: [f64; COUNT],
-        p: f64,
-    ) -> Option<f64> {
+    fn quantile(&self, w: &[f64], model: [f64; COUNT], p: f64) -> Option<f64> {
         let i = self.which;
-        let w = problem.weights(set, i)?;
-        let all = variance_of(&w, &self.covariance(model));
+        let all = variance_of(w, &self.covariance(model));
         let mut without = model;
         without[i] = 0.0;
-        let own = (all - variance_of(&w, &self.covariance(without))).max(0.0);
+        let own = (all - variance_of(w, &self.covariance(without))).max(0.0);
         let skewness = match model[i] > 0.0 {
             true => 2.0 * own * own / (model[i] * all.powf(1.5)),
             false => 0.0,

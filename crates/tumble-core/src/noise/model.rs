@@ -108,12 +108,17 @@ pub fn fit(variances: &[Variance], interval_s: f64, level: f64) -> Option<NoiseF
         let mut set = best.set;
         set[which] = true;
         // Of a coefficient that was left out: what it would have been known to.
-        let let_in = problem.fit(n, set, None);
-        let seen = let_in.map_or(f64::INFINITY, |s| s.uncertainties[which]);
-        let found = best.values;
         let tail = 0.5 * (1.0 - level);
-        let trial = Trial { variances, family: &family, found, which, tail };
-        let interval = if seen.is_finite() { trial.interval(seen) } else { [0.0, f64::INFINITY] };
+        let let_in = problem.fit(n, set, None).zip(problem.weights(set, which));
+        let interval = match let_in {
+            Some((s, weights)) => {
+                let (found, let_in) = (best.values, s.values[which]);
+                let family = &family;
+                let trial = Trial { variances, family, found, which, tail, weights, let_in };
+                trial.interval(s.uncertainties[which])
+            }
+            None => [0.0, f64::INFINITY],
+        };
         Coefficient {
             value: square.sqrt(),
             standard_uncertainty: (square > 0.0)
