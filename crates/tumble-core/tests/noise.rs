@@ -5,6 +5,8 @@
 mod coverage;
 #[path = "noise/nbs14.rs"]
 mod nbs14;
+#[path = "noise/published_curves.rs"]
+mod published_curves;
 #[path = "noise/stable32.rs"]
 mod stable32;
 #[path = "noise/streams.rs"]

@@ -246,9 +246,15 @@ impl NoiseRecord {
         }
         let useful = |p: &Pooled| 3 * p.variance.factor as u64 <= readings;
         let deviations = self.deviations.clone();
+        // The modified variance's stream holds averages of the velocity: what kind of noise it is, the velocity says.
+        let kind = |factor: usize| self.pooled[0].get(&factor).and_then(|(p, _)| p.kind);
         let rows = deviations.iter().zip(&self.pooled).map(|(deviation, pooled)| {
             let rows: Vec<Pooled> = match (deviation, &self.total) {
                 (Deviation::Total, Some(total)) => total.clone(),
+                (Deviation::Modified, _) => pooled
+                    .values()
+                    .map(|(p, _)| Pooled { kind: kind(p.variance.factor), ..*p })
+                    .collect(),
                 _ => pooled.values().map(|(p, _)| *p).collect(),
             };
             rows.into_iter().filter(useful).collect()

@@ -92,3 +92,14 @@ fn white_noise_is_seen_as_white() {
         assert_eq!(kind_at(v.points(), m, Deviation::Allan), Some(NoiseKind::White), "{m}");
     }
 }
+
+/// SP 1065, table 5: flicker at m = 1, `2(N−2)²/(2.3N−4.9)` = 222 for N = 257; by simulation 205. `edf_simple(alpha=-1,
+/// m=1)` of allantools 2024.6 lacks the square and gives 0.87: it is no oracle there.
+#[test]
+fn flicker_at_one_reading_has_hundreds_of_degrees_of_freedom() {
+    let edf = degrees_of_freedom(Deviation::Allan, NoiseKind::Flicker, 257, 1, 1).unwrap();
+    assert!((200.0..230.0).contains(&edf), "{edf}");
+    let discrete =
+        degrees_of_freedom_discrete(Deviation::Allan, NoiseKind::Flicker, 257, 1).unwrap();
+    assert!((200.0..235.0).contains(&discrete), "{discrete}");
+}

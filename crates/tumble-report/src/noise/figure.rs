@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 use tumble_io::noise::{CurveEntry, NoiseDocument};
 
-use super::{deviation_name, duration};
+use super::{deviation_name, duration, stated};
 use crate::Figure;
 use crate::figure::parts::{Sample, WIDTH, c, colour, document, drawable, label, legend, marker};
 use crate::numbers::{power_of_ten, significant, typographic};
@@ -97,7 +97,7 @@ pub(super) fn figure(d: &NoiseDocument) -> Option<Figure> {
 fn caption(d: &NoiseDocument) -> String {
     let mut text = format!(
         "Both scales are logarithmic. Bars: band of {} % by the equivalent degrees of freedom.",
-        significant(100.0 * d.level, 4)
+        stated(100.0 * d.level)
     );
     if d.fit.is_some() {
         text.push_str(

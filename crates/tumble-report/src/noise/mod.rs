@@ -45,7 +45,7 @@ fn duration(seconds: f64) -> String {
     let s = |v: f64| significant(v, 3);
     match seconds {
         t if t < 120.0 => format!("{} s", s(t)),
-        t if t < 7200.0 => format!("{} min", s(t / 60.0)),
+        t if t < 3600.0 => format!("{} min", s(t / 60.0)),
         t if t < 172_800.0 => format!("{} h", s(t / 3600.0)),
         t => format!("{} d", s(t / 86_400.0)),
     }
@@ -55,4 +55,13 @@ fn duration(seconds: f64) -> String {
 fn short_name(file: &str) -> String {
     let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
     crate::words::shortened(&clean_text(name), 40)
+}
+
+/// A number as it was read or given, without zeros that say nothing.
+fn stated(v: f64) -> String {
+    let text = significant(v, 10);
+    match text.contains('.') && !text.contains('e') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
 }

@@ -3,7 +3,7 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use tumble_io::noise::{CurveEntry, NoiseDocument};
 
-use super::{deviation_name, duration, short_name, with_interval};
+use super::{deviation_name, duration, short_name, stated, with_interval};
 use crate::numbers::{significant, typographic};
 use crate::sanitize::clean_text;
 
@@ -47,7 +47,7 @@ pub fn noise_page(d: &NoiseDocument) -> String {
                     @if let Some(c) = &d.converter {
                         section {
                             h2 { "Converter" }
-                            p { "Step " (n(c.step, 4)) " " (unit(d)) ". Rounding alone is white noise of "
+                            p { "Step " (stated(c.step)) " " (unit(d)) ". Rounding alone is white noise of "
                                 (n(c.of_a_reading, 3)) " " (unit(d)) " a reading (step/√12), N = " (n(c.n, 3)) " " (unit(d))
                                 " √s. The noise is " (n(c.noise_in_steps, 3)) " steps a reading"
                                 @if c.dithered { ", which spreads the readings over steps." }
@@ -86,14 +86,18 @@ fn lead(d: &NoiseDocument) -> String {
     let i = &d.input;
     let scale = match &d.scale {
         Some(s) => {
-            format!(" Scale: {} m/s² a unit, {}.", n(s.m_s2_per_unit, 6), clean_text(&s.source))
+            format!(
+                " Scale: {} m/s² a unit, {}.",
+                typographic(&stated(s.m_s2_per_unit)),
+                clean_text(&s.source)
+            )
         }
         None => format!(" No scale was given: results are in {}.", d.unit),
     };
     format!(
         "{} readings at {} Hz, {}. Mean {} {u}, standard deviation {} {u}.{scale}",
         i.readings,
-        n(i.rate_hz, 6),
+        typographic(&stated(i.rate_hz)),
         duration(i.readings as f64 / i.rate_hz),
         n(d.mean, 6),
         n(d.standard_deviation, 3),
@@ -107,7 +111,7 @@ fn coefficients(d: &NoiseDocument) -> Markup {
         section {
             h2 { "Coefficients" }
             div .scroll { table .whole {
-                caption { "Intervals of " (n(100.0 * fit.level, 3)) " %. χ² " (n(fit.chi_squared, 3)) " with "
+                caption { "Intervals of " (stated(100.0 * fit.level)) " %. χ² " (n(fit.chi_squared, 3)) " with "
                     (fit.degrees_of_freedom) " degrees of freedom." }
                 thead { tr { th scope="col" { "" } th scope="col" { "Noise" } th scope="col" { "Value" }
                     th scope="col" { "As data sheets write it" } } }
@@ -130,7 +134,7 @@ fn table(d: &NoiseDocument, curve: &CurveEntry) -> Markup {
         section {
             h2 { (crate::words::capitalized(deviation_name(&curve.deviation))) }
             div .scroll { table {
-                caption { (unit(d)) "; band of " (n(100.0 * d.level, 4)) " %"
+                caption { (unit(d)) "; band of " (stated(100.0 * d.level)) " %"
                     @if step > 1 { "; one time in " (step) " is listed" } }
                 thead { tr { th scope="col" { "τ, s" } th .n scope="col" { "m" } th .n scope="col" { "Deviation" }
                     th .n scope="col" { "Low" } th .n scope="col" { "High" } th .n scope="col" { "edf" }

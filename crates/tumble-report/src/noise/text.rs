@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use tumble_io::noise::{CurveEntry, NoiseDocument};
 
-use super::{deviation_name, duration, short_name, with_interval};
+use super::{deviation_name, duration, short_name, stated, with_interval};
 use crate::numbers::significant;
 use crate::sanitize::clean_text as plain;
 use crate::words::wrapped;
@@ -31,7 +31,7 @@ pub fn noise_table(d: &NoiseDocument) -> String {
         let text = format!(
             "step {} {u}; rounding alone is white noise of {} {u} a reading, N = {} {u} rts. The noise is {} steps a \
              reading, {dither}.",
-            significant(c.step, 4),
+            stated(c.step),
             significant(c.of_a_reading, 3),
             significant(c.n, 3),
             significant(c.noise_in_steps, 3),
@@ -66,7 +66,7 @@ fn head(out: &mut String, d: &NoiseDocument) {
         "{}: {} readings at {} Hz ({from}), {}",
         short_name(&i.file),
         i.readings,
-        significant(i.rate_hz, 6),
+        stated(i.rate_hz),
         duration(length)
     );
     out.push_str(&wrapped("record     ", &text, 11, WIDTH));
@@ -74,13 +74,13 @@ fn head(out: &mut String, d: &NoiseDocument) {
         "mean {} {u}, standard deviation {} {u}; read from {} to {}",
         significant(d.mean, 6),
         significant(d.standard_deviation, 3),
-        significant(d.extremes[0], 7),
-        significant(d.extremes[1], 7),
+        stated(d.extremes[0]),
+        stated(d.extremes[1]),
         u = d.unit
     );
     out.push_str(&wrapped("readings   ", &text, 11, WIDTH));
     let text = match &d.scale {
-        Some(s) => format!("{} m/s2 a unit, {}", significant(s.m_s2_per_unit, 6), plain(&s.source)),
+        Some(s) => format!("{} m/s2 a unit, {}", stated(s.m_s2_per_unit), plain(&s.source)),
         None => format!("none: results are in {}; --scale turns them into m/s2", d.unit),
     };
     out.push_str(&wrapped("scale      ", &text, 11, WIDTH));
@@ -93,21 +93,25 @@ fn table(out: &mut String, d: &NoiseDocument, curve: &CurveEntry) {
         deviation_name(&curve.deviation),
         curve.deviation,
         d.unit,
-        significant(100.0 * d.level, 4)
+        stated(100.0 * d.level)
     );
     let _ = writeln!(
         out,
-        "{:>10} {:>10} {:>10} {:>10} {:>10} {:>8}  kind of noise",
+        "{:>9} {:>9} {:>10} {:>10} {:>10} {:>8}  kind of noise",
         "tau/s", "m", "deviation", "low", "high", "edf"
     );
     let step = curve.points.len().div_ceil(LISTED).max(1);
     for p in curve.points.iter().step_by(step) {
         let band = |k: usize| p.band.map_or("-".to_owned(), |b| significant(b[k], 4));
         let kind = p.kind.as_deref().unwrap_or("-");
-        let kind = kind.split(" (").next().unwrap_or(kind);
+        // For lines of 80 columns.
+        let kind = match kind.split(" (").next().unwrap_or(kind) {
+            "flicker of the velocity" => "flicker velocity",
+            short => short,
+        };
         let _ = writeln!(
             out,
-            "{:>10} {:>10} {:>10} {:>10} {:>10} {:>8}  {}{}",
+            "{:>9} {:>9} {:>10} {:>10} {:>10} {:>8}  {}",
             significant(p.tau_s, 5),
             p.factor,
             significant(p.deviation, 4),
@@ -118,8 +122,7 @@ fn table(out: &mut String, d: &NoiseDocument, curve: &CurveEntry) {
             } else {
                 significant(e, 3)
             }),
-            if p.kind_is_carried { "as above" } else { kind },
-            if step > 1 { " ..." } else { "" }
+            if p.kind_is_carried { "as above" } else { kind }
         );
     }
     if step > 1 {
@@ -191,7 +194,7 @@ fn coefficients(out: &mut String, d: &NoiseDocument) {
     let _ = writeln!(
         out,
         "coefficients, intervals of {} % (chi2 {} with {} degrees of freedom)",
-        significant(100.0 * fit.level, 3),
+        stated(100.0 * fit.level),
         significant(fit.chi_squared, 3),
         fit.degrees_of_freedom
     );

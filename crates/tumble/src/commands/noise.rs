@@ -100,7 +100,10 @@ fn scale(args: &NoiseArgs) -> Result<Option<Scale>, String> {
         let of_unit = compensator(&passport, Proof::Waived).map_err(|e| format!("{name}: {e}"))?;
         let source = format!("scale factor of {name}");
         // A scale factor may be negative; deviations do not know signs.
-        return Ok(Some(Scale { m_s2_per_unit: of_unit.coefficients.scale_factor_m_s2_per_lsb.abs(), source }));
+        return Ok(Some(Scale {
+            m_s2_per_unit: of_unit.coefficients.scale_factor_m_s2_per_lsb.abs(),
+            source,
+        }));
     }
     let Some(model) = &args.sensor else { return Ok(None) };
     let catalogue = Catalogue::builtin();
