@@ -3,7 +3,7 @@
 use super::record::{Look, Pooled};
 use super::{
     Coefficients, Deviation, NoiseError, NoiseFit, NoiseKind, NoiseRecord, Times, Variance, band,
-    degrees_of_freedom, fit,
+    degrees_of_freedom, fit, unfiltered,
 };
 
 /// What is asked of a record.
@@ -102,6 +102,13 @@ pub enum NoiseRemark {
     PoorFit {
         /// Probability of a `χ²` as large.
         p: f64,
+        /// Relative discrepancy of the variances that the intervals allow for.
+        discrepancy: f64,
+    },
+    /// A low-pass filter shapes the curve up to a time; shorter ones are not in the fit.
+    Filtered {
+        /// The time, s.
+        until_s: f64,
     },
     /// No fit: too few points, or a variance of zero.
     NoFit,
@@ -172,13 +179,17 @@ impl NoiseRecord {
             let octaves = |v: &Variance| self.times != Times::All || v.factor.is_power_of_two();
             c.points.iter().map(|p| p.variance).filter(octaves).collect()
         });
-        let fit = fit(&allan, options.interval_s, options.fit_level);
+        let (free, filter_s) = unfiltered(&allan);
+        let fit = fit(free, options.interval_s, options.fit_level);
         let fit_p = fit.as_ref().and_then(|f| {
             crate::stats::chi_squared_p_value(f.chi_squared, f.degrees_of_freedom as f64)
         });
         let floor = floor(&self.look, &allan, options);
         let dwell = best_dwell(&allan, fit.as_ref());
-        let remarks = remarks(&self.look, floor.as_ref(), fit.as_ref(), fit_p);
+        let mut remarks = remarks(&self.look, floor.as_ref(), fit.as_ref(), fit_p);
+        remarks.extend(filter_s.map(|until_s| NoiseRemark::Filtered { until_s }));
+        // Below it the deviation is small because the filter holds the readings together.
+        let dwell = best_dwell(free, fit.as_ref()).or(dwell);
         Ok(NoiseAnalysis {
             readings: self.look.count,
             interval_s: options.interval_s,
@@ -293,7 +304,9 @@ fn remarks(
     }
     match (fit, fit_p) {
         (None, _) => out.push(NoiseRemark::NoFit),
-        (_, Some(p)) if p < POOR => out.push(NoiseRemark::PoorFit { p }),
+        (Some(fit), Some(p)) if p < POOR => {
+            out.push(NoiseRemark::PoorFit { p, discrepancy: fit.discrepancy });
+        }
         _ => {}
     }
     out

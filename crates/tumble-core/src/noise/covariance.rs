@@ -25,6 +25,8 @@ const SECOND: [f64; 3] = [1.0, -2.0, 1.0];
 #[derive(Debug, Clone)]
 pub struct AllanCovariance {
     size: usize,
+    measured: Vec<f64>,
+    discrepancy: f64,
     /// For each pair of variances, row by row of the upper triangle.
     pairs: Vec<Pair>,
 }
@@ -50,7 +52,15 @@ impl AllanCovariance {
             .flat_map(|i| (i..size).map(move |j| (i, j)))
             .map(|(i, j)| pair(&variances[i], &variances[j], interval_s))
             .collect();
-        Self { size, pairs }
+        let measured = variances.iter().map(|v| v.variance).collect();
+        Self { size, measured, discrepancy: 0.0, pairs }
+    }
+
+    /// The same where the true variances differ from any model, each on its own, by so much (standard, relative to what
+    /// was measured: relative to the model it would grow with every misfit).
+    #[must_use]
+    pub fn with_discrepancy(self, discrepancy: f64) -> Self {
+        Self { discrepancy, ..self }
     }
 
     /// The covariance under a model.
@@ -71,6 +81,9 @@ impl AllanCovariance {
                 out[(i, j)] = sum;
                 out[(j, i)] = sum;
             }
+        }
+        for i in 0..self.size {
+            out[(i, i)] += (self.discrepancy * self.measured[i]).powi(2);
         }
         out
     }

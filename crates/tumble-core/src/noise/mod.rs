@@ -13,6 +13,7 @@ mod covariance;
 mod deviation;
 mod differences;
 mod edf;
+mod filter;
 mod interval;
 mod kind;
 mod model;
@@ -32,6 +33,7 @@ pub use analysis::{
 pub use covariance::AllanCovariance;
 pub use deviation::{Deviation, Variance, octaves, variances};
 pub use edf::{band, degrees_of_freedom, degrees_of_freedom_discrete};
+pub use filter::unfiltered;
 pub use kind::{KindSums, NoiseKind, kind_at};
 pub use model::{Coefficient, Coefficients, NoiseFit, fit};
 pub use octave::allan_octaves;

@@ -3,8 +3,15 @@
 use super::Variance;
 use super::covariance::AllanCovariance;
 use super::interval::Trial;
-use super::subset::Problem;
+use super::subset::{Problem, Subset};
 use crate::linalg::Matrix;
+use crate::stats::chi_squared_p_value;
+
+/// Probability of a `χ²` below which a discrepancy is looked for.
+const NO_CHANCE: f64 = 1e-3;
+/// Discrepancies that are looked at, and halvings of their logarithm.
+const LARGEST_DISCREPANCY: (f64, f64) = (1e-5, 3.0);
+const HALVINGS: usize = 16;
 
 /// Rounds of weights and fit; the weights hardly change after the third.
 const ROUNDS: usize = 6;
@@ -70,6 +77,8 @@ pub struct NoiseFit {
     pub squares: Coefficients,
     /// `χ²` of the variances about the model, with their covariance.
     pub chi_squared: f64,
+    /// How far the true variances are from any such model (relative, standard), where `χ²` is no chance; else zero.
+    pub discrepancy: f64,
     /// Variances less coefficients.
     pub degrees_of_freedom: usize,
 }
@@ -81,8 +90,9 @@ pub struct NoiseFit {
 ///
 /// **Uncertainty** the standard uncertainty is that of the fit with the coefficients that are left in it. The interval
 /// holds the true sizes at which what was found is no surprise, the other coefficients fitted anew at each size: it knows
-/// that a coefficient that was left out may be there after all, and is not symmetric. It holds what the model holds: other
-/// kinds of noise are not in it.
+/// that a coefficient that was left out may be there after all, and is not symmetric. Real sensors have filters, vibration
+/// and noise of other kinds, and long records show them: where `χ²` is no chance, a relative discrepancy of every variance is
+/// estimated and stands in weights and intervals.
 ///
 /// `None` with fewer than two variances, or where one is zero.
 #[must_use]
@@ -96,12 +106,16 @@ pub fn fit(variances: &[Variance], interval_s: f64, level: f64) -> Option<NoiseF
     for (i, v) in variances.iter().enumerate() {
         c[(i, i)] = v.variance.powi(2) * 2.0 * v.factor as f64 / v.terms as f64;
     }
-    let mut problem = Problem::new(variances, &c)?;
-    let mut best = problem.best(n, None)?;
-    let family = AllanCovariance::of(variances, interval_s);
-    for _ in 0..ROUNDS {
-        problem = Problem::new(variances, &family.at(&Coefficients::from_order(best.values)))?;
-        best = problem.best(n, None)?;
+    let first = Problem::new(variances, &c)?.best(n, None)?;
+    let mut family = AllanCovariance::of(variances, interval_s);
+    let (mut problem, mut best) = rounds(variances, &family, &first)?;
+    let dof = n.saturating_sub(best.set.iter().filter(|s| **s).count());
+    let chi_squared = best.chi_squared;
+    let mut discrepancy = 0.0;
+    if chi_squared_p_value(chi_squared, dof as f64).is_some_and(|p| p < NO_CHANCE) {
+        discrepancy = found_discrepancy(variances, &family, &first);
+        family = family.with_discrepancy(discrepancy);
+        (problem, best) = rounds(variances, &family, &first)?;
     }
     let coefficients = core::array::from_fn(|which| {
         let square = best.values[which];
@@ -129,7 +143,44 @@ pub fn fit(variances: &[Variance], interval_s: f64, level: f64) -> Option<NoiseF
     Some(NoiseFit {
         coefficients,
         squares: Coefficients::from_order(best.values),
-        chi_squared: best.chi_squared,
-        degrees_of_freedom: n.saturating_sub(best.set.iter().filter(|s| **s).count()),
+        chi_squared,
+        discrepancy,
+        degrees_of_freedom: dof,
     })
+}
+
+/// The fit and its covariance brought together, from a first fit on.
+fn rounds(
+    variances: &[Variance],
+    family: &AllanCovariance,
+    first: &Subset,
+) -> Option<(Problem, Subset)> {
+    let mut best = first.clone();
+    let mut problem = None;
+    for _ in 0..ROUNDS {
+        let c = family.at(&Coefficients::from_order(best.values));
+        let next = Problem::new(variances, &c)?;
+        best = next.best(variances.len(), None)?;
+        problem = Some(next);
+    }
+    Some((problem?, best))
+}
+
+/// **Model** Mandel and Paule: the discrepancy at which `χ²` is its number of degrees of freedom.
+fn found_discrepancy(variances: &[Variance], family: &AllanCovariance, first: &Subset) -> f64 {
+    let (mut low, mut high) = LARGEST_DISCREPANCY;
+    for _ in 0..HALVINGS {
+        let middle = f64::sqrt(low * high);
+        let there = rounds(variances, &family.clone().with_discrepancy(middle), first);
+        let surplus = there.is_none_or(|(_, best)| {
+            let used = best.set.iter().filter(|s| **s).count();
+            best.chi_squared > variances.len().saturating_sub(used) as f64
+        });
+        if surplus {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    high
 }

@@ -148,6 +148,7 @@ fn fit(f: &NoiseFit, a: &NoiseAnalysis, unit: &str) -> FitEntry {
         level: FIT_LEVEL,
         coefficients: f.coefficients.iter().enumerate().map(coefficient).collect(),
         chi_squared: f.chi_squared,
+        discrepancy: f.discrepancy,
         degrees_of_freedom: f.degrees_of_freedom as u64,
         p: a.fit_p,
         curve: curve.into_iter().map(place).collect(),
@@ -222,9 +223,14 @@ fn remarks(read: &Read, a: &NoiseAnalysis) -> Vec<String> {
             NoiseRemark::Undithered => "the noise of single readings is below half a step of the converter: averages follow \
                  its steps, and the curve and its coefficients are those of the converter, not of the sensor"
                 .into(),
-            NoiseRemark::PoorFit { p } => format!(
-                "Q, N, B, K and R do not describe the curve (p = {p:.1e}): vibration, a filter, periodic noise or an \
-                 experiment that was not at rest; the intervals of the coefficients do not hold"
+            NoiseRemark::PoorFit { p, discrepancy } => format!(
+                "Q, N, B, K and R do not describe the curve within its own scatter (p = {p:.1e}): a filter, vibration, periodic \
+                 noise, or a sensor that was not at rest; weights and intervals allow for {:.1} % of every variance",
+                100.0 * discrepancy
+            ),
+            NoiseRemark::Filtered { until_s } => format!(
+                "the curve rises from the shortest time on and then falls: readings come faster than a low-pass filter before \
+                 them lets them change; times below {until_s:.3} s are not in the fit"
             ),
             NoiseRemark::NoFit => "no coefficients: too few averaging times, or a variance of zero".into(),
         });

@@ -108,6 +108,8 @@ pub struct FitEntry {
     pub coefficients: Vec<CoefficientEntry>,
     /// `χ²` about the model.
     pub chi_squared: f64,
+    /// Relative discrepancy of the variances from the model that the intervals allow for; zero where `χ²` may be chance.
+    pub discrepancy: f64,
     /// Variances less coefficients.
     pub degrees_of_freedom: u64,
     /// Probability of a `χ²` as large.
