@@ -1,6 +1,6 @@
 //! Time of the overlapping Allan deviation at octaves, one core, beside a summing pass and a prefix sum.
 //!
-//! `cargo run --release -p tumble-core --example oadev -- 10000000`; `benches/` runs it beside a peer.
+//! `cargo run --release -p tumble-core --example oadev -- 10000000`; `benches/noise` runs it beside a peer.
 #![allow(clippy::print_stdout)] // It is there to print.
 
 use std::hint::black_box;
@@ -41,10 +41,18 @@ fn main() {
         readings.chunks(1 << 16).for_each(|c| stream.push(c));
         let streamed = black_box(stream.finish());
         let bounded = start.elapsed();
+        let seconds = [sum, prefix, whole, at_octaves, bounded].map(|d| d.as_secs_f64());
         println!(
-            "round {round}: sum {sum:.1?}, prefix sum {prefix:.1?}, oadev {whole:.1?} ({} octaves), octaves {at_octaves:.1?}, stream {bounded:.1?} ({})",
-            found.len(),
-            streamed.len()
+            "round {round}: sum {:.4}, prefix {:.4}, velocity {:.4}, octaves {:.4}, stream {:.4} s, {} octaves, first {:.10e}, last {:.10e}",
+            seconds[0],
+            seconds[1],
+            seconds[2],
+            seconds[3],
+            seconds[4],
+            direct.len(),
+            direct.first().map_or(0.0, |v| v.variance.sqrt()),
+            direct.last().map_or(0.0, |v| v.variance.sqrt()),
         );
+        black_box(&streamed);
     }
 }
