@@ -1,5 +1,5 @@
 //! Allan variance and its relatives against NIST SP 1065, Stable32, and records whose noise is known.
-#![allow(clippy::unwrap_used)] // A test that cannot unwrap has failed.
+#![allow(clippy::unwrap_used, clippy::print_stdout)] // A test that cannot unwrap has failed; figures are for people.
 
 #[path = "noise/coverage.rs"]
 mod coverage;

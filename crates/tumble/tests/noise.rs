@@ -1,5 +1,5 @@
 //! `tumble noise` as a user meets it: published figures, files as people have them, hostile ones.
-#![allow(clippy::unwrap_used)] // A test that cannot unwrap has failed.
+#![allow(clippy::unwrap_used, clippy::print_stdout)] // A test that cannot unwrap has failed; figures are for people.
 
 use std::fmt::Write as _;
 use std::io::Write as _;

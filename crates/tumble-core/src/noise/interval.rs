@@ -119,7 +119,7 @@ impl Trial<'_> {
             false => 0.0,
         };
         let dof = (8.0 / (skewness * skewness)).max(FEW);
-        if !(dof < MANY) {
+        if dof >= MANY {
             return Some(normal_quantile(p));
         }
         Some((chi_squared_quantile(p, dof)? - dof) / (2.0 * dof).sqrt())

@@ -199,7 +199,9 @@ mod tests {
         let uneven: Vec<f64> =
             (0..400).map(|i| f64::from(i) + if i % 2 == 0 { 0.0 } else { 0.3 }).collect();
         let mut watch = StepWatch::of(&uneven).unwrap();
-        uneven.iter().for_each(|t| drop(watch.push(*t)));
+        for t in &uneven {
+            watch.push(*t);
+        }
         assert!(watch.interval_s().is_err(), "{watch:?}");
         assert_eq!(StepWatch::of(&[1.0, 1.0]), Err(StepError::NoStep));
     }

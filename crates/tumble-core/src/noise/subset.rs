@@ -121,7 +121,7 @@ impl Problem {
         }
         for k in 0..p {
             let pivot = a[k][k];
-            if !(pivot > INDEPENDENT) {
+            if pivot <= INDEPENDENT || pivot.is_nan() {
                 return None;
             }
             for l in 0..p {
