@@ -19,6 +19,7 @@ mod gravity;
 mod histogram;
 pub mod judge;
 pub mod linalg;
+pub mod noise;
 mod nominal;
 mod quantizer;
 mod readings;

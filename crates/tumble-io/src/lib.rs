@@ -17,6 +17,7 @@ mod folder;
 #[doc(hidden)]
 pub mod fuzzing;
 mod init;
+pub mod noise;
 mod output;
 pub mod passport;
 mod simulation;

@@ -63,6 +63,14 @@ pub fn chi_squared_p_value(x: f64, dof: f64) -> Option<f64> {
     x.is_finite().then(|| d.sf(x.max(0.0)))
 }
 
+/// Quantile of χ².
+#[must_use]
+pub fn chi_squared_quantile(p: f64, dof: f64) -> Option<f64> {
+    use statrs::distribution::ChiSquared;
+    let d = ChiSquared::new(dof).ok()?;
+    (p > 0.0 && p < 1.0).then(|| d.inverse_cdf(p)).filter(|q| q.is_finite())
+}
+
 /// Mean of a slice; `None` when it is empty.
 #[must_use]
 pub fn mean(values: &[f64]) -> Option<f64> {

@@ -115,12 +115,12 @@ fn code_remedy(text: &[u8], format: CodeFormat) -> &'static str {
 }
 
 /// One line with what is needed to complain about it.
-pub(super) struct Row<'a> {
-    pub(super) fields: Fields<'a>,
-    pub(super) columns: &'a Columns,
-    pub(super) file: &'a str,
+pub(crate) struct Row<'a> {
+    pub(crate) fields: Fields<'a>,
+    pub(crate) columns: &'a Columns,
+    pub(crate) file: &'a str,
     /// Its number.
-    pub(super) line: u64,
+    pub(crate) line: u64,
 }
 
 impl Row<'_> {
@@ -129,7 +129,7 @@ impl Row<'_> {
     }
 
     #[inline]
-    pub(super) fn check_width(&self) -> Result<(), ReadError> {
+    pub(crate) fn check_width(&self) -> Result<(), ReadError> {
         let (seen, expected) = (self.fields.len(), self.columns.names.len());
         if seen == expected {
             return Ok(());
@@ -151,7 +151,7 @@ impl Row<'_> {
     }
 
     /// A field without blanks and quotes around it.
-    pub(super) fn text(&self, index: usize) -> &[u8] {
+    pub(crate) fn text(&self, index: usize) -> &[u8] {
         trimmed(self.fields.get(index))
     }
 
@@ -193,7 +193,7 @@ impl Row<'_> {
 
     /// A time, s.
     #[inline]
-    pub(super) fn time_s(&self, index: usize, dialect: &Dialect) -> Result<f64, ReadError> {
+    pub(crate) fn time_s(&self, index: usize, dialect: &Dialect) -> Result<f64, ReadError> {
         let unit = dialect.time_unit.unwrap_or_default();
         let text = self.text(index);
         if unit != TimeUnit::Date {
@@ -216,7 +216,7 @@ impl Row<'_> {
         })
     }
 
-    pub(super) fn real(&self, index: usize, expected: &'static str) -> Result<f64, ReadError> {
+    pub(crate) fn real(&self, index: usize, expected: &'static str) -> Result<f64, ReadError> {
         let text = self.text(index);
         self.check_marks(index)?;
         real(text, self.columns.decimal).ok_or_else(|| {

@@ -9,7 +9,7 @@ use crate::numbers::{fixed, power_of_ten, typographic};
 const LARGEST: f64 = 1e200;
 
 /// Whether a number can be drawn.
-pub(super) fn drawable(v: f64) -> bool {
+pub(crate) fn drawable(v: f64) -> bool {
     v.is_finite() && v.abs() < LARGEST
 }
 

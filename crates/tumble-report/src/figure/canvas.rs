@@ -5,20 +5,20 @@ use maud::{Markup, PreEscaped, html};
 use super::style::style;
 
 /// Width of all figures; heights differ.
-pub(super) const WIDTH: f64 = 760.0;
+pub(crate) const WIDTH: f64 = 760.0;
 
 /// A coordinate: two decimals.
-pub(super) fn c(v: f64) -> String {
+pub(crate) fn c(v: f64) -> String {
     crate::numbers::fixed(if v.is_finite() { v } else { 0.0 }, 2)
 }
 
 /// Text at a place; `class` says size and anchor.
-pub(super) fn label(x: f64, y: f64, class: &str, text: &str) -> Markup {
+pub(crate) fn label(x: f64, y: f64, class: &str, text: &str) -> Markup {
     html! { text class=(class) x=(c(x)) y=(c(y)) { (text) } }
 }
 
 /// The whole document.
-pub(super) fn document(
+pub(crate) fn document(
     name: &str,
     title: &str,
     description: &str,

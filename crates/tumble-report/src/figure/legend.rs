@@ -7,7 +7,7 @@ use super::mark::{colour, marker};
 
 /// What stands before the words.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Sample {
+pub(crate) enum Sample {
     /// A run's line.
     Line(usize),
     /// A run's marker.
@@ -28,7 +28,7 @@ const LINE: f64 = 18.0;
 const SAMPLE: f64 = 26.0;
 
 /// Entries from (`x`, `y`) to the right edge; gives the markup and its height.
-pub(super) fn legend(
+pub(crate) fn legend(
     entries: &[(Sample, String)],
     (left, right): (f64, f64),
     y: f64,

@@ -7,12 +7,12 @@ use super::style::COLOURS;
 const SHAPES: usize = 5;
 
 /// Class of a run's colour.
-pub(super) fn colour(run: usize) -> String {
+pub(crate) fn colour(run: usize) -> String {
     format!("s{}", run % COLOURS)
 }
 
 /// Path of a run's marker around a point.
-pub(super) fn marker(run: usize, x: f64, y: f64, r: f64) -> String {
+pub(crate) fn marker(run: usize, x: f64, y: f64, r: f64) -> String {
     // Six colours and five shapes: no two of the first thirty runs look alike.
     match run % SHAPES {
         0 => format!(
@@ -46,7 +46,7 @@ pub(super) fn interval(x1: f64, x2: f64, y: f64, cap: f64) -> String {
 }
 
 /// A vertical interval with end caps.
-pub(super) fn upright(x: f64, y1: f64, y2: f64, cap: f64) -> String {
+pub(crate) fn upright(x: f64, y1: f64, y2: f64, cap: f64) -> String {
     let (y1, y2, x1, x2) = (c(y1), c(y2), c(x - cap), c(x + cap));
     format!("M{x1} {y1}H{x2}M{x1} {y2}H{x2}M{x} {y1}V{y2}", x = c(x))
 }

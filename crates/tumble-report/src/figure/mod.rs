@@ -10,12 +10,20 @@ mod residuals;
 mod settling;
 mod style;
 
+/// What figures outside of this module are made of.
+pub(crate) mod parts {
+    pub(crate) use super::axis::drawable;
+    pub(crate) use super::canvas::{WIDTH, c, document, label};
+    pub(crate) use super::legend::{Sample, legend};
+    pub(crate) use super::mark::{colour, marker, upright};
+}
+
 use tumble_io::passport::Passport;
 
 /// A figure: SVG with its own style for light and dark, and words for it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Figure {
-    /// File stem: `settling`, `residuals`, `intervals` or `error-level`.
+    /// File stem: `settling`, `residuals`, `intervals`, `error-level` or `noise`.
     pub name: &'static str,
     /// Title, plain text.
     pub title: String,

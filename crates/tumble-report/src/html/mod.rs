@@ -82,6 +82,11 @@ pub fn html(passport: &Passport) -> String {
     .into_string()
 }
 
+/// The style sheet of a page that is no passport.
+pub(crate) fn report_style(subject: &str) -> String {
+    style::style(Standing::Unknown, subject, "")
+}
+
 /// A section with its heading; nothing at all where the body is empty.
 fn section(heading: &str, body: &Markup) -> Markup {
     html! {

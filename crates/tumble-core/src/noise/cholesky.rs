@@ -1,0 +1,61 @@
+//! Square root of a covariance.
+
+use crate::linalg::Matrix;
+
+/// `C = L Lᵀ`.
+pub(super) struct Cholesky {
+    lower: Matrix,
+}
+
+impl Cholesky {
+    pub fn of(c: &Matrix) -> Option<Self> {
+        let n = c.rows();
+        let mut l = Matrix::zeros(n, n);
+        for j in 0..n {
+            let mut d = c[(j, j)];
+            for k in 0..j {
+                d -= l[(j, k)] * l[(j, k)];
+            }
+            // Thinned sums leave a covariance that is not quite one: held at a thousandth of the diagonal.
+            let d = d.max(1e-3 * c[(j, j)]);
+            if !(d > 0.0 && d.is_finite()) {
+                return None;
+            }
+            l[(j, j)] = d.sqrt();
+            for i in j + 1..n {
+                let mut s = c[(i, j)];
+                for k in 0..j {
+                    s -= l[(i, k)] * l[(j, k)];
+                }
+                l[(i, j)] = s / l[(j, j)];
+            }
+        }
+        Some(Self { lower: l })
+    }
+
+    /// `L⁻¹ y`.
+    pub fn solve_lower(&self, y: &[f64]) -> Vec<f64> {
+        let mut out = y.to_vec();
+        for i in 0..out.len() {
+            for k in 0..i {
+                let known = out[k];
+                out[i] -= self.lower[(i, k)] * known;
+            }
+            out[i] /= self.lower[(i, i)];
+        }
+        out
+    }
+
+    /// `L⁻ᵀ y`.
+    pub fn solve_upper(&self, y: &[f64]) -> Vec<f64> {
+        let mut out = y.to_vec();
+        for i in (0..out.len()).rev() {
+            for k in i + 1..out.len() {
+                let known = out[k];
+                out[i] -= self.lower[(k, i)] * known;
+            }
+            out[i] /= self.lower[(i, i)];
+        }
+        out
+    }
+}
