@@ -19,6 +19,7 @@ mod histogram;
 pub mod judge;
 pub mod linalg;
 mod nominal;
+pub mod plan;
 mod quantizer;
 mod readings;
 mod record;
