@@ -269,8 +269,9 @@ fn systematic(
         (Possible::Yes, 0) => 0.0,
         (Possible::Yes, _) => 1.0 / f64::from(runs),
     };
-    // Variance of (ψ² + η²)/2; its expectation can be corrected for.
-    let cosine = ((tilt.powi(4) + lean.powi(4)) / 2.0).sqrt();
+    // Root mean square of (ψ² + η²)/2 about zero: its expectation is not corrected for.
+    let cosine =
+        (3.0 * tilt.powi(4) + 3.0 * lean.powi(4) + 2.0 * (tilt * lean).powi(2)).sqrt() / 2.0;
     let upright = |index: usize| {
         let mut f = vec![0.0; sites.len()];
         f[index] = upright_lean_m_s2(problem);

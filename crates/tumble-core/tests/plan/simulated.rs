@@ -176,11 +176,12 @@ fn estimate(problem: &PlanProblem, solver: &Matrix, readings: &[f64]) -> Vec<f64
     out
 }
 
+/// Root mean square error about the truth.
 fn spread_of(problem: &PlanProblem, plan: &Plan, experiments: usize, seed: u128) -> Vec<f64> {
     let mut n = Normal(Pcg64Mcg::new(seed));
     let solver = solver(problem, plan);
     let p = solver.rows();
-    let (mut sum, mut squares) = (vec![0.0; p], vec![0.0; p]);
+    let mut squares = vec![0.0; p];
     let truth = [BIAS_M_S2, MISALIGNMENT_RAD, SCALE, 0.0];
     for _ in 0..experiments {
         let c = common(problem, &mut n);
@@ -192,12 +193,10 @@ fn spread_of(problem: &PlanProblem, plan: &Plan, experiments: usize, seed: u128)
         }
         for i in 0..p {
             let d = mean[i] - truth[i];
-            sum[i] += d;
             squares[i] += d * d;
         }
     }
-    let m = experiments as f64;
-    (0..p).map(|i| ((squares[i] - sum[i] * sum[i] / m) / (m - 1.0)).sqrt()).collect()
+    squares.iter().map(|s| (s / experiments as f64).sqrt()).collect()
 }
 
 /// Ten benches, seeds fixed before anything was looked at: 1 to 10.

@@ -14,6 +14,8 @@ pub struct PlanDocument {
     pub sensor: String,
     /// Whether all targets are met.
     pub met: bool,
+    /// Whether somebody asked for these targets; else they are the defaults of `certify`.
+    pub targets_stated: bool,
     /// Number of runs.
     pub runs: u32,
     /// Length of a dwell, s.
@@ -200,6 +202,7 @@ impl PlanDocument {
             format: 1,
             sensor: request.sensor.clone(),
             met: plan.met,
+            targets_stated: p.targets.iter().any(Option::is_some),
             runs: plan.runs,
             dwell_s: plan.dwell_s,
             setting_s: p.times.setting_s,

@@ -212,7 +212,7 @@ fn resolve(
         noise,
         converter,
         turn_on_m_s2: s.turn_on_m_s2,
-        systematics: systematics(&s, entry, &mut assumed),
+        systematics: systematics(&s, entry, scatter_arcmin, [low, high], &mut assumed),
         times,
         total_s: s.hours.map(|h| h * 3600.0),
         upright: possible(s.updown),
@@ -327,45 +327,52 @@ fn converter(
     Some(PlanConverter { lsb_m_s2, rate_hz })
 }
 
+/// What `certify` takes for the errors of a table that nobody stated: docs/budget.md. The dial is read to no better than it is
+/// set, at its ends and about its centre; axis and sensor are level to what a bubble and a hand give.
+const ASSUMED_TILT_ARCMIN: f64 = 30.0;
+/// K2 in µg/g² and K3 in µg/g³ where neither the user nor the catalogue knows better.
+const ASSUMED_CURVATURE_UG: f64 = 100.0;
+
 fn systematics(
     s: &PlanSettings,
     entry: Option<&SensorType>,
+    scatter_arcmin: f64,
+    range_deg: [f64; 2],
     assumed: &mut Vec<String>,
 ) -> PlanSystematics {
-    let arcmin = |v: Option<f64>| Angle::from_arcmin(v.unwrap_or(0.0));
-    let mut none = Vec::new();
-    for (stated, name) in [
-        (s.dial_scale.is_some(), "dial scale"),
-        (s.eccentricity_arcmin.is_some(), "eccentricity"),
-        (s.dial_zero_arcmin.is_some(), "dial zero"),
-        (s.axis_tilt_arcmin.is_some() && s.sensor_lean_arcmin.is_some(), "tilt and lean"),
-    ] {
-        if !stated {
-            none.push(name);
-        }
+    let farthest = range_deg.iter().fold(0.0, |a: f64, b| a.max(b.abs())).max(1e-6);
+    let as_set_ppm = scatter_arcmin / (60.0 * farthest) * 1e6;
+    let dial_scale = s.dial_scale_uncertainty_ppm.unwrap_or(as_set_ppm) * 1e-6;
+    let eccentricity = s.eccentricity_arcmin.unwrap_or(scatter_arcmin);
+    if s.dial_scale_uncertainty_ppm.is_none() || s.eccentricity_arcmin.is_none() {
+        assumed.push("a dial no truer than it is set (--dial-scale, --eccentricity)".into());
     }
-    if !none.is_empty() {
-        assumed.push(format!("no error of the table by {}", none.join(", ")));
+    let tilt = s.axis_tilt_arcmin.unwrap_or(ASSUMED_TILT_ARCMIN);
+    let leaning = s.sensor_lean_arcmin.unwrap_or(ASSUMED_TILT_ARCMIN);
+    if s.axis_tilt_arcmin.is_none() || s.sensor_lean_arcmin.is_none() {
+        assumed.push(format!("axis tilt and sensor lean of {ASSUMED_TILT_ARCMIN} arcmin (--tilt)"));
     }
     let lean = s.updown_lean_arcmin.unwrap_or(DEFAULT_VERTICAL_LEAN_ARCMIN);
     if s.updown == Some(true) && s.updown_lean_arcmin.is_none() {
         assumed.push(format!("upright dwells that lean by {lean} arcmin, standard (--lean)"));
     }
     let limit = entry.and_then(nonlinearity);
-    let (k2, k3) = limit.as_ref().map_or((0.0, 0.0), |l| (l.0, l.1));
+    let (ug, gn) = (ASSUMED_CURVATURE_UG * 1e-6, STANDARD_GRAVITY_M_S2);
+    let (k2, k3) = limit.as_ref().map_or((ug / gn, ug / (gn * gn)), |l| (l.0, l.1));
     match limit {
-        Some(l) if s.k2_per_m_s2.is_none() => assumed.push(l.2),
-        None if s.k2_per_m_s2.is_none() => {
-            assumed.push("a sensor that is straight (--terms k2 fits its bow)".into());
+        Some(l) if s.k2_per_m_s2.is_none() || s.k3_per_m2_s4.is_none() => assumed.push(l.2),
+        None if s.k2_per_m_s2.is_none() || s.k3_per_m2_s4.is_none() => {
+            let said = format!("K2 and K3 of {ASSUMED_CURVATURE_UG} ug/g2 and ug/g3 (--k2, --k3)");
+            assumed.push(said);
         }
         _ => {}
     }
     PlanSystematics {
-        dial_scale: s.dial_scale.unwrap_or(0.0),
-        eccentricity: arcmin(s.eccentricity_arcmin),
-        dial_zero: arcmin(s.dial_zero_arcmin),
-        axis_tilt: arcmin(s.axis_tilt_arcmin),
-        sensor_lean: arcmin(s.sensor_lean_arcmin),
+        dial_scale,
+        eccentricity: Angle::from_arcmin(eccentricity),
+        dial_zero: Angle::from_arcmin(s.angle_zero_uncertainty_arcmin.unwrap_or(0.0)),
+        axis_tilt: Angle::from_arcmin(tilt),
+        sensor_lean: Angle::from_arcmin(leaning),
         upright_lean: Angle::from_arcmin(lean),
         k2_per_m_s2: s.k2_per_m_s2.unwrap_or(k2),
         k3_per_m2_s4: s.k3_per_m2_s4.unwrap_or(k3),

@@ -46,12 +46,12 @@ pub struct PlanSettings {
     pub level_scatter_m_s2: Option<f64>,
     /// Standard deviation of the bias between power-ups, m/s².
     pub turn_on_m_s2: Option<f64>,
-    /// Scale of the dial, standard, relative.
-    pub dial_scale: Option<f64>,
+    /// Scale of the dial, standard, ppm.
+    pub dial_scale_uncertainty_ppm: Option<f64>,
     /// Eccentricity of the dial, amplitude.
     pub eccentricity_arcmin: Option<f64>,
     /// Zero of dial and level, standard.
-    pub dial_zero_arcmin: Option<f64>,
+    pub angle_zero_uncertainty_arcmin: Option<f64>,
     /// Tilt of the table's axis, standard.
     pub axis_tilt_arcmin: Option<f64>,
     /// Lean of the sensor, standard.
@@ -109,7 +109,7 @@ impl PlanSettings {
         each!(
             hours runs dwell_s spares criterion terms temperature_rise_k step_deg setting_s settle_s upright_s restart_s
             updown remounting noise_ug_rthz bias_instability_ug random_walk_m_s2_rts drift_m_s2_h level_scatter_m_s2
-            turn_on_m_s2 dial_scale eccentricity_arcmin dial_zero_arcmin axis_tilt_arcmin sensor_lean_arcmin k2_per_m_s2
+            turn_on_m_s2 dial_scale_uncertainty_ppm eccentricity_arcmin angle_zero_uncertainty_arcmin axis_tilt_arcmin sensor_lean_arcmin k2_per_m_s2
             k3_per_m2_s4 sensor range_deg scatter_arcmin gravity_m_s2 updown_lean_arcmin lsb_m_s2 rate_hz white_m_s2_rts
             level
         )

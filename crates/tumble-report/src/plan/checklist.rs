@@ -23,10 +23,12 @@ ol{margin:1mm 0;padding-left:6mm}
 table{border-collapse:collapse;width:100%}
 thead{display:table-header-group}
 tr{break-inside:avoid}
+th.w{text-align:left}
 th{font-size:9pt;text-align:left;font-weight:600;border-bottom:.4mm solid #000;padding:1mm 2mm}
 td{border-bottom:.2mm solid #999;padding:.8mm 2mm;vertical-align:middle;height:8.4mm}
-.n,.t{text-align:right;font-variant-numeric:tabular-nums;color:#333;width:14mm}
+.n,.t{text-align:right;white-space:nowrap;font-variant-numeric:tabular-nums;color:#333;width:14mm}
 .a{text-align:right;font-size:17pt;font-weight:700;font-variant-numeric:tabular-nums;width:34mm;white-space:nowrap;line-height:1}
+th.a{font-size:9pt;font-weight:600}
 .box{width:10mm}.box i{display:block;width:5.5mm;height:5.5mm;border:.5mm solid #000}
 .do{font-size:9.5pt}
 .act td{background:#eee;font-weight:600;-webkit-print-color-adjust:exact;print-color-adjust:exact}

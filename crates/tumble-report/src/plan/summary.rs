@@ -61,7 +61,14 @@ fn headline(out: &mut String, d: &PlanDocument) {
         duration(d.total_s)
     );
     if d.met {
-        out.push_str(&wrapped("PLAN - ", &format!("{what} All targets are met."), 7, WIDTH));
+        let met =
+            if d.targets_stated { "All targets are met." } else { "The usual targets are met." };
+        out.push_str(&wrapped("PLAN - ", &format!("{what} {met}"), 7, WIDTH));
+        return;
+    }
+    if !d.targets_stated {
+        let missed = "The usual targets are missed: see what limits, or name yours with --target.";
+        out.push_str(&wrapped("PLAN - ", &format!("{what} {missed}"), 7, WIDTH));
         return;
     }
     out.push_str(&wrapped("TARGETS NOT MET - ", &format!("the best plan: {what}"), 18, WIDTH));
@@ -160,14 +167,15 @@ fn uncertainties(out: &mut String, d: &PlanDocument) {
 }
 
 fn by_source(out: &mut String, d: &PlanDocument) {
+    let wide = if d.predicted.len() <= 4 { 13 } else { 9 };
     let mut head = format!("  {:<26}", "standard uncertainty by");
     for t in &d.predicted {
-        let _ = write!(head, "{:>10}", shortened(name(&t.term).split(' ').next().unwrap_or(""), 9));
+        let _ = write!(head, "{:>wide$}", shortened(name(&t.term), wide - 1));
     }
-    let _ = writeln!(out, "{}", shortened_line(&head));
+    let _ = writeln!(out, "{head}");
     let mut units = format!("  {:<26}", "");
     for t in &d.predicted {
-        let _ = write!(units, "{:>10}", scale(&t.term).1);
+        let _ = write!(units, "{:>wide$}", scale(&t.term).1);
     }
     let _ = writeln!(out, "{units}");
     let mut names: Vec<(&str, &str)> = Vec::new();
@@ -183,19 +191,15 @@ fn by_source(out: &mut String, d: &PlanDocument) {
         let mut line = format!("  {words:<26}");
         for t in &d.predicted {
             let u = t.sources.iter().find(|s| s.source == source).map(|s| s.u);
-            let _ = write!(line, "{:>10}", u.map_or_else(|| "-".into(), |u| number(&t.term, u)));
+            let _ = write!(line, "{:>wide$}", u.map_or_else(|| "-".into(), |u| number(&t.term, u)));
         }
         let _ = writeln!(out, "{line}");
     }
     let mut line = format!("  {:<26}", "together");
     for t in &d.predicted {
-        let _ = write!(line, "{:>10}", number(&t.term, t.u));
+        let _ = write!(line, "{:>wide$}", number(&t.term, t.u));
     }
     let _ = writeln!(out, "{line}");
-}
-
-fn shortened_line(line: &str) -> String {
-    line.chars().take(WIDTH).collect::<String>().trim_end().to_owned()
 }
 
 fn limits(out: &mut String, d: &PlanDocument) {
@@ -224,7 +228,29 @@ fn limits(out: &mut String, d: &PlanDocument) {
     }
 }
 
+/// The paper's plan by what the choice of angles can change.
+fn paper(out: &mut String, d: &PlanDocument) {
+    let Some(p) = &d.paper else { return };
+    let each: Vec<String> = d
+        .predicted
+        .iter()
+        .filter_map(|t| {
+            let theirs = p.predicted.iter().find(|q| q.term == t.term)?;
+            let ratio = theirs.u_statistical / t.u_statistical;
+            Some(format!("{} {}", name(&t.term), times(ratio))).filter(|_| ratio.is_finite())
+        })
+        .collect();
+    let text = format!(
+        "-30 to 29 deg, {} dwells of {}, in the same time scatters {} times as much",
+        p.positions,
+        duration(p.dwell_s),
+        each.join(", ")
+    );
+    row(out, "paper's plan", &text);
+}
+
 fn quality(out: &mut String, d: &PlanDocument) {
+    paper(out, d);
     let mut best = format!(
         "no plan with these spares, steps and times is more than {} % better",
         significant((100.0 * d.gap).max(0.01), 2)
