@@ -207,7 +207,7 @@ mod tests {
     fn targets_have_a_term_and_a_size_that_fits_it() {
         let bias = AccelerationArg::MS2(0.5e-3);
         assert_eq!(target("bias=0.5mm/s2"), Ok(Target::Acceleration(Term::Bias, bias)));
-        assert_eq!(target("scale = 200ppm"), Ok(Target::Plain(Term::ScaleError, 2e-4)));
+        assert_eq!(target("scale = 0.5"), Ok(Target::Plain(Term::ScaleError, 0.5)));
         assert!(target("bias").unwrap_err().contains("TERM=SIZE"));
         assert!(target("offset=1mg").unwrap_err().contains("misalignment"));
         assert!(target("bias=1mrad").unwrap_err().contains("mm/s2"));

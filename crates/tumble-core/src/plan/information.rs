@@ -39,8 +39,9 @@ impl Information {
         self
     }
 
-    pub fn add_diagonal(&mut self, i: usize, value: f64) {
-        self.m[i][i] += value;
+    /// Makes a diagonal element larger by a share of itself.
+    pub fn add_diagonal(&mut self, i: usize, share: f64) {
+        self.m[i][i] += share * self.m[i][i];
     }
 
     /// Inverse and logarithm of the determinant; `None` where columns are not told apart.

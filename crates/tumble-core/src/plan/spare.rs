@@ -10,7 +10,8 @@ const LOOKED_AT: usize = 91;
 const APART: f64 = 1.0 / 14.0;
 /// Passes of exchanges.
 const PASSES: usize = 10;
-/// What is known of the tested terms without spares, so that the first one can be judged: next to nothing.
+/// What is known of the tested terms without spares, so that the first one can be judged: next to nothing of what all dwells
+/// would say of them alone.
 const RIDGE: f64 = 1e-6;
 
 /// Spare angles where they show best what the model leaves out: K2 and K3 where those are not fitted, else the powers above.
