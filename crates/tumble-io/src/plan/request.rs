@@ -68,35 +68,56 @@ pub fn plan_request(
     flags: PlanSettings,
     catalogue: Option<&UserCatalogue>,
 ) -> Result<PlanRequest, ReadError> {
-    let mut gravity = None;
-    let stated = match path {
-        None => flags,
-        Some(path) => {
-            let (file, own) = read(path)?;
-            gravity = own;
-            flags.or(file)
+    let file = path.map(text_of).transpose()?;
+    let (stated, gravity) = match &file {
+        None => (flags, None),
+        Some(file) => {
+            let (own, gravity) = read(file)?;
+            (flags.or(own), gravity)
         }
     };
     let mut catalogue_now = Catalogue::builtin().clone();
     if let Some(user) = catalogue {
         catalogue_now = catalogue_now.with(&user.catalogue);
     }
-    resolve(stated, gravity, &catalogue_now, path)
+    resolve(stated, gravity, &catalogue_now, path).map_err(|e| match &file {
+        Some(file) => file.located(e),
+        None => ReadError { place: Place::file("tumble plan"), ..e },
+    })
 }
 
-/// The settings of a file, and its gravity.
-fn read(path: &Path) -> Result<(PlanSettings, Option<Gravity>), ReadError> {
-    let folder = path.is_dir();
-    let file = if folder { path.join(EXPERIMENT_FILE) } else { path.to_path_buf() };
+/// A file with its name as people gave it.
+struct Text {
+    text: String,
+    shown: String,
+    is_experiment: bool,
+}
+
+impl Text {
+    fn located(&self, mut e: ReadError) -> ReadError {
+        if e.place.file == EXPERIMENT_FILE {
+            e.place.file.clone_from(&self.shown);
+        }
+        experiment_file::located(e, &self.text, &self.shown)
+    }
+}
+
+fn text_of(path: &Path) -> Result<Text, ReadError> {
+    let file = if path.is_dir() { path.join(EXPERIMENT_FILE) } else { path.to_path_buf() };
     let shown = file.display().to_string();
     let bytes = read_document(&file, &shown, DOCUMENT_LIMIT)?;
-    let text = std::str::from_utf8(&bytes).map_err(|_| ReadError {
+    let text = String::from_utf8(bytes).map_err(|_| ReadError {
         place: Place::file(&shown),
         problem: Problem::Format { seen: "not UTF-8 text", remedy: "save the file as UTF-8" },
     })?;
-    let named_experiment = file.file_name().is_some_and(|n| n == EXPERIMENT_FILE);
-    let parts = if named_experiment {
-        let e = experiment_file::parse(text, &shown)?;
+    let is_experiment = file.file_name().is_some_and(|n| n == EXPERIMENT_FILE);
+    Ok(Text { text, shown, is_experiment })
+}
+
+/// The settings of a file, and its gravity.
+fn read(file: &Text) -> Result<(PlanSettings, Option<Gravity>), ReadError> {
+    let parts = if file.is_experiment {
+        let e = experiment_file::parse(&file.text, &file.shown)?;
         BenchFile {
             format: e.format,
             sensor: Some(e.sensor),
@@ -111,14 +132,9 @@ fn read(path: &Path) -> Result<(PlanSettings, Option<Gravity>), ReadError> {
             spec: e.spec,
         }
     } else {
-        toml_text::from_toml(text, &shown)?
+        toml_text::from_toml(&file.text, &file.shown)?
     };
-    settings_of(parts).map_err(|mut e| {
-        if e.place.file == EXPERIMENT_FILE {
-            e.place.file.clone_from(&shown);
-        }
-        experiment_file::located(e, text, &shown)
-    })
+    settings_of(parts).map_err(|e| file.located(e))
 }
 
 fn settings_of(file: BenchFile) -> Result<(PlanSettings, Option<Gravity>), ReadError> {
