@@ -204,27 +204,35 @@ fn has_targets(problem: &PlanProblem) -> bool {
 fn in_least_time(problem: &PlanProblem, least_s: f64) -> Option<(Layout, f64)> {
     let mut total_s = DEFAULT_TOTAL_S.max(least_s);
     let mut best: Option<(Layout, f64)> = None;
+    // The longest time that was too short.
+    let mut short = least_s;
     for _ in 0..TIME_STEPS {
         let made = search::within(problem, total_s)?;
         let met = made.prediction.worst_ratio() <= 1.0;
         let needed = needed_s(&made.prediction, total_s);
-        let better = best.as_ref().is_none_or(|b| {
-            let was = b.0.prediction.worst_ratio() <= 1.0;
-            if met && was { total_s < b.1 } else { met || (!was && total_s > b.1) }
-        });
-        if better {
+        let enough =
+            if met { Some(total_s) } else { best.as_ref().filter(|b| is_met(b)).map(|b| b.1) };
+        if !met {
+            short = total_s;
+        }
+        if met || enough.is_none() {
             best = Some((made, total_s));
         }
-        // Out of reach: show what an hour gives.
-        let Some(needed) = needed else { break };
-        // From above, by a hair: the guess forgets that whole positions and seconds do not fill the time.
-        let next = (needed * (1.0 + 0.5 * TIME_TOLERANCE)).clamp(least_s, LONGEST_TOTAL_S);
-        if met && next > total_s * (1.0 - TIME_TOLERANCE) || next == total_s {
-            break;
-        }
-        total_s = if met { next } else { next.max(total_s * (1.0 + TIME_TOLERANCE)) };
+        total_s = match (needed, enough) {
+            (_, Some(enough)) if enough <= short * (1.0 + TIME_TOLERANCE) => break,
+            // From above, by a hair: the guess forgets that whole dwells and seconds do not fill the time.
+            (Some(t), Some(enough)) if t > short * 1.01 && t < enough * 0.98 => t * 1.01,
+            (_, Some(enough)) => (short * enough).sqrt(),
+            (Some(t), None) => t.clamp(short * (1.0 + TIME_TOLERANCE), LONGEST_TOTAL_S),
+            // Out of reach: show what this time gives.
+            (None, None) => break,
+        };
     }
     best
+}
+
+fn is_met(made: &(Layout, f64)) -> bool {
+    made.0.prediction.worst_ratio() <= 1.0
 }
 
 /// Time in which a plan's statistical part has fallen to what the targets leave for it.
@@ -315,6 +323,37 @@ fn check(p: &PlanProblem) -> Result<(), PlanError> {
             "the step of the dial, 0.0001 deg to a quarter of the range",
         );
     }
+    check_sizes(p)?;
+    if p.total_s.is_some_and(|t| t > LONGEST_TOTAL_S) {
+        return wrong("time", p.total_s.unwrap_or(0.0), "at most a week, in s");
+    }
+    if p.terms().contains(&Term::BiasPerKelvin) && p.temperature_rise_k <= 0.0 {
+        return wrong(
+            "rise of temperature",
+            0.0,
+            "how much it rises during a run, K, to fit bias per kelvin",
+        );
+    }
+    if let Some(t) =
+        Term::ALL.iter().find(|t| p.targets[t.index()].is_some() && !p.terms().contains(t))
+    {
+        return wrong("target", t.index() as f64, "targets only for terms that are fitted");
+    }
+    if p.runs == Some(0) || p.runs.is_some_and(|r| r > 100) {
+        return wrong("runs", f64::from(p.runs.unwrap_or(0)), "1 to 100 runs");
+    }
+    if p.spares > 12 {
+        return wrong("spares", p.spares as f64, "at most 12 spare angles");
+    }
+    if !(0.5..1.0).contains(&p.level) {
+        return wrong("level", p.level, "a level of confidence between 0.5 and 1");
+    }
+    Ok(())
+}
+
+/// Refuses sizes that no quantity has.
+fn check_sizes(p: &PlanProblem) -> Result<(), PlanError> {
+    let wrong = |name, value, expected| Err(PlanError::Value { name, value, expected });
     let s = &p.systematics;
     let not_negative = [
         ("scatter of angles", p.setting_scatter.rad()),
@@ -355,30 +394,6 @@ fn check(p: &PlanProblem) -> Result<(), PlanError> {
         all.filter_map(|(n, v)| Some((n, v?))).find(|(_, v)| !(v.is_finite() && *v > 0.0))
     {
         return wrong(name, value, "a positive number");
-    }
-    if p.total_s.is_some_and(|t| t > LONGEST_TOTAL_S) {
-        return wrong("time", p.total_s.unwrap_or(0.0), "at most a week, in s");
-    }
-    if p.terms().contains(&Term::BiasPerKelvin) && p.temperature_rise_k <= 0.0 {
-        return wrong(
-            "rise of temperature",
-            0.0,
-            "how much it rises during a run, K, to fit bias per kelvin",
-        );
-    }
-    if let Some(t) =
-        Term::ALL.iter().find(|t| p.targets[t.index()].is_some() && !p.terms().contains(t))
-    {
-        return wrong("target", t.index() as f64, "targets only for terms that are fitted");
-    }
-    if p.runs == Some(0) || p.runs.is_some_and(|r| r > 100) {
-        return wrong("runs", f64::from(p.runs.unwrap_or(0)), "1 to 100 runs");
-    }
-    if p.spares > 12 {
-        return wrong("spares", p.spares as f64, "at most 12 spare angles");
-    }
-    if !(0.5..1.0).contains(&p.level) {
-        return wrong("level", p.level, "a level of confidence between 0.5 and 1");
     }
     Ok(())
 }
