@@ -21,6 +21,7 @@ pub mod judge;
 pub mod linalg;
 pub mod noise;
 mod nominal;
+pub mod plan;
 mod quantizer;
 mod readings;
 mod record;

@@ -20,6 +20,7 @@ mod init;
 pub mod noise;
 mod output;
 pub mod passport;
+mod plan;
 mod simulation;
 mod source;
 mod toml_text;
@@ -37,5 +38,10 @@ pub use explained::explained_json;
 pub use folder::{ExperimentFolder, FileDigest, read_experiment, read_experiment_with};
 pub use init::{Assumed, InitDraft, InitFacts, draft_experiment, experiment_file};
 pub use output::{Existing, OutputError, OutputFolder, Written, write_file};
+pub use plan::{
+    PlanDocument, PlanFile, PlanRequest, PlanSettings, PlannedGain, PlannedOrder, PlannedPaper,
+    PlannedPosition, PlannedRuns, PlannedSource, PlannedTerm, plan_request, plan_toml,
+    read_plan_file,
+};
 pub use simulation::{SimulationError, SimulationOptions, write_simulation};
 pub use source::{Watch, open_text};

@@ -18,6 +18,7 @@ fn main() -> std::process::ExitCode {
         cli::Command::Certify(a) => commands::certify::run(&a),
         cli::Command::Simulate(a) => commands::simulate::run(&a),
         cli::Command::Noise(a) => commands::noise::run(&a),
+        cli::Command::Plan(a) => commands::plan::run(&a),
         cli::Command::Compensate(a) => commands::compensate::run(&a),
         cli::Command::Explain(a) => commands::explain::run(&a),
         cli::Command::Completions(a) => commands::completions::run(&a),

@@ -1,5 +1,6 @@
 //! Numbers with units on the command line: `-0.82LSB`, `3arcmin`, `110ug/rtHz`.
 
+use tumble_core::plan::Term;
 use tumble_core::{Angle, STANDARD_GRAVITY_M_S2};
 
 /// An acceleration: in m/s², or in LSB of the nominal scale.
@@ -156,6 +157,36 @@ pub(crate) fn k2(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Largest expanded uncertainty of a term that still serves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Target {
+    /// Of an acceleration; perhaps in LSB.
+    Acceleration(Term, AccelerationArg),
+    /// In the term's own unit.
+    Plain(Term, f64),
+}
+
+/// `bias=0.5mm/s2`, `scale=200ppm`, `misalignment=1mrad`, `k2=50ug/g2`.
+pub(crate) fn target(text: &str) -> Result<Target, String> {
+    let names = Term::ALL.map(Term::name).join(" ");
+    let help = || format!("give TERM=SIZE, for instance bias=0.5mm/s2; terms are {names}");
+    let (name, size) = text.split_once('=').ok_or_else(help)?;
+    let name = name.trim();
+    let term = Term::ALL.into_iter().find(|t| t.name().eq_ignore_ascii_case(name));
+    Ok(match term.ok_or_else(help)? {
+        term @ (Term::Bias | Term::BiasPerKelvin) => {
+            Target::Acceleration(term, acceleration(size)?)
+        }
+        term @ Term::Misalignment => Target::Plain(term, angle(size)?.rad()),
+        term @ Term::ScaleError => Target::Plain(term, ratio(size)?),
+        term @ Term::K2 => Target::Plain(term, k2(size)?),
+        term @ Term::K3 => {
+            let v = size.trim().parse().map_err(|_| "give K3 in 1/(m/s2)2, for instance 1e-6")?;
+            Target::Plain(term, v)
+        }
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -170,6 +201,16 @@ mod tests {
         assert!((k2("100ug/g2").unwrap() * STANDARD_GRAVITY_M_S2 - 1e-4).abs() < 1e-18);
         let density = noise("110ug/rtHz").unwrap().m_s2(1.0, 50.0);
         assert!((density - 110e-6 * 9.80665 * 5.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn targets_have_a_term_and_a_size_that_fits_it() {
+        let bias = AccelerationArg::MS2(0.5e-3);
+        assert_eq!(target("bias=0.5mm/s2"), Ok(Target::Acceleration(Term::Bias, bias)));
+        assert_eq!(target("scale = 0.5"), Ok(Target::Plain(Term::ScaleError, 0.5)));
+        assert!(target("bias").unwrap_err().contains("TERM=SIZE"));
+        assert!(target("offset=1mg").unwrap_err().contains("misalignment"));
+        assert!(target("bias=1mrad").unwrap_err().contains("mm/s2"));
     }
 
     #[test]

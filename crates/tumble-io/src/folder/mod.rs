@@ -23,6 +23,7 @@ use crate::experiment_file::{
     self, BenchTable, CsvTable, DiscardValue, ExperimentFile, Orientation, RunTable, ScaleTable,
 };
 use crate::source::{DOCUMENT_LIMIT, Watch, read_document};
+pub(crate) use settings::bench as bench_of_table;
 use settings::{bench, dialect, discard, mapping, missing, output, targets, value};
 use systematics::systematics;
 

@@ -92,7 +92,7 @@ pub(super) fn output(table: &OutputTable) -> Result<Output, ReadError> {
     })
 }
 
-pub(super) fn bench(table: &BenchTable) -> Result<Bench, ReadError> {
+pub(crate) fn bench(table: &BenchTable) -> Result<Bench, ReadError> {
     let gravity_range = "local gravity in m/s², between 9.7 and 9.9";
     let gravity = match (table.gravity, table.latitude_deg, table.height_m) {
         (Some(g), None, None) => {

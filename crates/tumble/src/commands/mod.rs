@@ -9,4 +9,5 @@ pub(crate) mod explain;
 pub(crate) mod init;
 pub(crate) mod man;
 pub(crate) mod noise;
+pub(crate) mod plan;
 pub(crate) mod simulate;

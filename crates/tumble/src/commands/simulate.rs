@@ -2,14 +2,24 @@
 
 use tumble_core::simulate::{Preset, Truth};
 use tumble_core::{Code, Quantizer};
-use tumble_io::{Existing, SimulationError, SimulationOptions, Written, write_simulation};
+use tumble_io::{
+    Existing, PlanFile, SimulationError, SimulationOptions, Written, read_plan_file,
+    write_simulation,
+};
 
 use crate::cli::{PresetArg, QuantizerArg, SimulateArgs};
 use crate::exit::{Exit, complain};
 use crate::interrupt;
 
 pub(crate) fn run(args: &SimulateArgs) -> Exit {
-    let truth = truth(args);
+    let plan = match args.plan.as_deref().map(read_plan_file).transpose() {
+        Ok(plan) => plan,
+        Err(e) => {
+            complain(&e);
+            return Exit::of_reading(&e);
+        }
+    };
+    let truth = truth(args, plan.as_ref());
     let options = SimulationOptions {
         model: args.model.clone(),
         serial: args.serial.clone().unwrap_or_else(|| preset_serial(args.preset).into()),
@@ -62,9 +72,14 @@ fn preset_serial(arg: PresetArg) -> &'static str {
     }
 }
 
-/// The preset with every flag put over it.
-fn truth(a: &SimulateArgs) -> Truth {
-    let p = preset(a.preset).truth();
+/// The preset with the plan put over it, and every flag over both.
+fn truth(a: &SimulateArgs, plan: Option<&PlanFile>) -> Truth {
+    let mut p = preset(a.preset).truth();
+    if let Some(plan) = plan {
+        p.angles_deg.clone_from(&plan.angles_deg);
+        p.upright_in_each_run = plan.updown;
+        (p.dwell_s, p.runs) = (plan.dwell_s, plan.runs);
+    }
     let k0 = a.nominal_scale.unwrap_or(p.nominal_scale_m_s2_per_lsb);
     let rate_hz = a.rate.unwrap_or(p.rate_hz);
     Truth {
@@ -90,7 +105,7 @@ fn truth(a: &SimulateArgs) -> Truth {
         axis_tilt: a.axis_tilt.unwrap_or(p.axis_tilt),
         sensor_lean: a.sensor_lean.unwrap_or(p.sensor_lean),
         vertical_lean: a.lean.unwrap_or(p.vertical_lean),
-        upright_in_each_run: a.updown,
+        upright_in_each_run: a.updown || p.upright_in_each_run,
         quantizer: a.quantizer.map_or(p.quantizer, |q| match q {
             QuantizerArg::Truncate => Quantizer::Truncate,
             QuantizerArg::Floor => Quantizer::Floor,

@@ -1,0 +1,178 @@
+//! What would make the result better, each reckoned through.
+
+use super::layout::{Layout, layout};
+use super::predict::{Prediction, predict_plan};
+use super::problem::{PlanProblem, Possible, Term};
+use super::search;
+use crate::Angle;
+
+/// Something that can be done about a plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lever {
+    /// One more minute in all.
+    Minute,
+    /// Twice the time.
+    TwiceTheTime,
+    /// Two more runs of the same kind.
+    TwoRuns,
+    /// Half the scatter of setting angles.
+    Setting,
+    /// Dwells up and down in each run.
+    Upright,
+    /// A table that turns ±90°.
+    Range,
+    /// Half the tilt, lean and zero of the table.
+    Level,
+    /// Half the errors of the dial's scale and centre.
+    Dial,
+    /// Gravity measured, to 1 mGal.
+    Gravity,
+    /// Turning the body by 180° between runs.
+    Remounting,
+    /// K2 fitted, not taken from the data sheet.
+    FitK2,
+}
+
+impl Lever {
+    /// All, in the order of lists.
+    pub const ALL: [Self; 11] = [
+        Self::Minute,
+        Self::TwiceTheTime,
+        Self::TwoRuns,
+        Self::Setting,
+        Self::Upright,
+        Self::Range,
+        Self::Level,
+        Self::Dial,
+        Self::Gravity,
+        Self::Remounting,
+        Self::FitK2,
+    ];
+
+    /// Name in files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Minute => "minute",
+            Self::TwiceTheTime => "twice_the_time",
+            Self::TwoRuns => "two_runs",
+            Self::Setting => "setting",
+            Self::Upright => "up_down",
+            Self::Range => "range",
+            Self::Level => "level",
+            Self::Dial => "dial",
+            Self::Gravity => "gravity",
+            Self::Remounting => "remounting",
+            Self::FitK2 => "fit_k2",
+        }
+    }
+
+    /// For people.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Minute => "one more minute",
+            Self::TwiceTheTime => "twice the time",
+            Self::TwoRuns => "two more runs like these",
+            Self::Setting => "angles set twice as well",
+            Self::Upright => "dwells up and down in each run",
+            Self::Range => "a table that turns 90 deg both ways",
+            Self::Level => "table levelled twice as well",
+            Self::Dial => "dial calibrated twice as well",
+            Self::Gravity => "gravity measured to 1 mGal",
+            Self::Remounting => "body turned 180 deg between runs",
+            Self::FitK2 => "K2 fitted",
+        }
+    }
+}
+
+/// What a lever does.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Gain {
+    /// The lever.
+    pub lever: Lever,
+    /// What the plan would know with it.
+    pub prediction: Prediction,
+}
+
+/// Levers that change the limiting term by more than this share are worth a line.
+pub const WORTH_SAYING: f64 = 0.01;
+
+/// Every lever that is not pulled yet.
+pub(super) fn gains(problem: &PlanProblem, plan: &Layout, total_s: f64) -> Vec<Gain> {
+    Lever::ALL
+        .into_iter()
+        .filter_map(|lever| Some(Gain { lever, prediction: with(problem, plan, total_s, lever)? }))
+        .collect()
+}
+
+fn with(problem: &PlanProblem, plan: &Layout, total_s: f64, lever: Lever) -> Option<Prediction> {
+    let mut other = problem.clone();
+    let half = |a: Angle| Angle::from_rad(0.5 * a.rad());
+    let s = &mut other.systematics;
+    match lever {
+        Lever::Minute => return Some(longer(problem, &plan.prediction, 1.0 + 60.0 / total_s)),
+        Lever::TwiceTheTime => {
+            return search::best_of(problem, 2.0 * total_s, search::COMPARED).map(|l| l.prediction);
+        }
+        Lever::TwoRuns => return predict_plan(problem, &plan.sites, plan.dwell_s, plan.runs + 2),
+        Lever::Setting => other.setting_scatter = half(problem.setting_scatter),
+        Lever::Level => {
+            s.axis_tilt = half(s.axis_tilt);
+            s.sensor_lean = half(s.sensor_lean);
+            s.dial_zero = half(s.dial_zero);
+        }
+        Lever::Dial => {
+            s.dial_scale *= 0.5;
+            s.eccentricity = half(s.eccentricity);
+        }
+        Lever::Gravity if problem.gravity.standard_uncertainty_m_s2 > MEASURED_GRAVITY_M_S2 => {
+            other.gravity.standard_uncertainty_m_s2 = MEASURED_GRAVITY_M_S2;
+        }
+        Lever::Remounting if problem.remounting == Possible::No => other.remounting = Possible::Yes,
+        Lever::Upright if problem.upright == Possible::No => {
+            other.upright = Possible::Yes;
+            return again(&other, plan);
+        }
+        Lever::Range if problem.range.1.deg() < 90.0 && problem.upright == Possible::No => {
+            other.range = (Angle::from_deg(-90.0), Angle::from_deg(90.0));
+            return again(&other, plan);
+        }
+        Lever::FitK2 if !problem.further_terms.contains(&Term::K2) => {
+            other.further_terms.push(Term::K2);
+            return again(&other, plan);
+        }
+        _ => return None,
+    }
+    if other == *problem {
+        return None;
+    }
+    predict_plan(&other, &plan.sites, plan.dwell_s, plan.runs)
+}
+
+/// 1 mGal: any gravimeter, or a gravity base station within a few kilometres.
+const MEASURED_GRAVITY_M_S2: f64 = 1e-5;
+
+/// As many dwells of the same length, in as many runs.
+fn again(problem: &PlanProblem, plan: &Layout) -> Option<Prediction> {
+    let table = plan.sites.iter().filter(|s| !s.is_upright()).count();
+    layout(problem, plan.dwell_s, table, plan.runs).map(|l| l.prediction)
+}
+
+/// The same plan with `factor` times the dwells: what scatters falls with the root.
+fn longer(problem: &PlanProblem, p: &Prediction, factor: f64) -> Prediction {
+    let mut out = p.clone();
+    for t in &mut out.terms {
+        for (source, u) in &mut t.sources {
+            if source.averages_out() && *source != super::Source::BetweenRuns {
+                *u /= factor.sqrt();
+            }
+        }
+        let sum = |keep: &dyn Fn(super::Source) -> bool| {
+            t.sources.iter().filter(|s| keep(s.0)).map(|s| s.1 * s.1).sum::<f64>().sqrt()
+        };
+        (t.u, t.u_statistical) = (sum(&|_| true), sum(&super::Source::averages_out));
+    }
+    debug_assert_eq!(problem.terms().len(), out.terms.len());
+    out
+}

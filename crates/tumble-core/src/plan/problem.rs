@@ -1,0 +1,332 @@
+//! What a plan is asked for: bench, sensor, time, and what is wanted.
+
+use crate::{Angle, Gravity, Seat, Targets};
+
+/// What a plan can be asked to determine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Term {
+    /// `Δa`, m/s².
+    Bias,
+    /// `Δφ`, rad.
+    Misalignment,
+    /// `δk`, relative.
+    ScaleError,
+    /// Quadratic nonlinearity, (m/s²)/(m/s²)².
+    K2,
+    /// Cubic nonlinearity, (m/s²)/(m/s²)³.
+    K3,
+    /// Bias per kelvin, m/s²/K: temperature that rises evenly during a run.
+    BiasPerKelvin,
+}
+
+impl Term {
+    /// All, in the order of every array.
+    pub const ALL: [Self; 6] =
+        [Self::Bias, Self::Misalignment, Self::ScaleError, Self::K2, Self::K3, Self::BiasPerKelvin];
+
+    /// Index in arrays.
+    #[must_use]
+    pub fn index(self) -> usize {
+        self as usize
+    }
+
+    /// Name in files and on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Bias => "bias",
+            Self::Misalignment => "misalignment",
+            Self::ScaleError => "scale",
+            Self::K2 => "k2",
+            Self::K3 => "k3",
+            Self::BiasPerKelvin => "temperature",
+        }
+    }
+
+    /// Name for people.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::ScaleError => "scale error",
+            Self::K2 => "K2",
+            Self::K3 => "K3",
+            Self::BiasPerKelvin => "bias per kelvin",
+            _ => self.name(),
+        }
+    }
+
+    /// Element of a position's equation, as in equation (6) of the method with `+ K2 a² + K3 a³`; zero for what
+    /// depends on time alone.
+    #[must_use]
+    pub fn column(self, site: Site, gravity_m_s2: f64) -> f64 {
+        let a = gravity_m_s2 * site.sine();
+        match self {
+            Self::Bias => 1.0,
+            Self::Misalignment => gravity_m_s2 * site.cosine(),
+            Self::ScaleError => -a,
+            Self::K2 => a * a,
+            Self::K3 => a * a * a,
+            Self::BiasPerKelvin => 0.0,
+        }
+    }
+}
+
+/// Where a dwell is taken.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Site {
+    /// Table angle.
+    pub angle: Angle,
+    /// On the table or stood upright.
+    pub seat: Seat,
+}
+
+impl Site {
+    /// On the table.
+    #[must_use]
+    pub fn table(angle_deg: f64) -> Self {
+        Self { angle: Angle::from_deg(angle_deg), seat: Seat::Table }
+    }
+
+    /// Stood upright, up then down.
+    pub const UPRIGHT: [Self; 2] = [
+        Self { angle: Angle::from_rad(core::f64::consts::FRAC_PI_2), seat: Seat::Up },
+        Self { angle: Angle::from_rad(-core::f64::consts::FRAC_PI_2), seat: Seat::Down },
+    ];
+
+    /// Share of gravity along the axis.
+    #[must_use]
+    pub fn sine(self) -> f64 {
+        self.seat.vertical_sign().unwrap_or_else(|| self.angle.sin())
+    }
+
+    /// What an error of the table's angle does, over gravity; an upright dwell knows none.
+    #[must_use]
+    pub fn cosine(self) -> f64 {
+        if self.is_upright() { 0.0 } else { self.angle.cos() }
+    }
+
+    /// Whether it stands off the table.
+    #[must_use]
+    pub fn is_upright(self) -> bool {
+        self.seat.vertical_sign().is_some()
+    }
+}
+
+/// Noise of the sensor in the coefficients of the Allan variance.
+///
+/// **Model** `σ²(τ) = N²/τ + (2 ln 2/π) B² + K² τ/3`, and a steady drift.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PlanNoise {
+    /// `N`, m/s² √s: one-sided density over √2.
+    pub white_m_s2_rts: f64,
+    /// `B`, m/s²: flicker.
+    pub flicker_m_s2: f64,
+    /// `K`, m/s² per √s: random walk.
+    pub walk_m_s2_rts: f64,
+    /// Steady drift, m/s² per s, standard: its sign is not known.
+    pub ramp_m_s3: f64,
+}
+
+/// The converter, as far as a plan depends on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanConverter {
+    /// One LSB, m/s².
+    pub lsb_m_s2: f64,
+    /// Samples per second.
+    pub rate_hz: f64,
+}
+
+/// Standard uncertainties that stay the same for all positions and runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanSystematics {
+    /// Scale of the dial, relative.
+    pub dial_scale: f64,
+    /// Amplitude of the dial's once-a-turn error, root mean square; any phase.
+    pub eccentricity: Angle,
+    /// Zero of the dial and level of the table.
+    pub dial_zero: Angle,
+    /// Tilt of the table's axis out of the horizontal.
+    pub axis_tilt: Angle,
+    /// Lean of the sensitive axis out of the plane in which the table turns.
+    pub sensor_lean: Angle,
+    /// Lean of upright dwells.
+    pub upright_lean: Angle,
+    /// K2 where it is not fitted, (m/s²)/(m/s²)².
+    pub k2_per_m_s2: f64,
+    /// K3 where it is not fitted, (m/s²)/(m/s²)³.
+    pub k3_per_m2_s4: f64,
+}
+
+impl PlanSystematics {
+    /// A table and a sensor without systematic errors.
+    pub const NONE: Self = Self {
+        dial_scale: 0.0,
+        eccentricity: Angle::from_rad(0.0),
+        dial_zero: Angle::from_rad(0.0),
+        axis_tilt: Angle::from_rad(0.0),
+        sensor_lean: Angle::from_rad(0.0),
+        upright_lean: Angle::from_rad(0.0),
+        k2_per_m_s2: 0.0,
+        k3_per_m2_s4: 0.0,
+    };
+}
+
+/// K2 and K3 that a limit of nonlinearity (a share of full scale) leaves room for, as standard uncertainties.
+///
+/// **Model** over ±A the deviation from the best straight line reaches `n`; bow and S share its variance. A bow `K2 a²` is off
+/// its best line by `K2 A²/2`, an S `K3 a³` by `K3 A³/4`: `K2 = √2 n/A²`, `K3 = 2√2 n/A³`.
+///
+/// **Units** `(m/s²)/(m/s²)²` and `(m/s²)/(m/s²)³`.
+#[must_use]
+pub fn curvature_of_limit(share: f64, full_scale_m_s2: f64) -> (f64, f64) {
+    let n = share * full_scale_m_s2;
+    let root = 2f64.sqrt();
+    (root * n / full_scale_m_s2.powi(2), 2.0 * root * n / full_scale_m_s2.powi(3))
+}
+
+/// How long things take.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanTimes {
+    /// To turn the table to an angle and read it, s.
+    pub setting_s: f64,
+    /// To let it settle before the dwell, s.
+    pub settle_s: f64,
+    /// To stand the body upright, or to take it off, s: instead of turning the table.
+    pub upright_s: f64,
+    /// From the end of a run to the first dwell of the next: power off, on, warm up, s.
+    pub restart_s: f64,
+}
+
+/// Whether the bench can do something.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Possible {
+    /// It can.
+    Yes,
+    /// It cannot.
+    No,
+}
+
+/// What is made small.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Criterion {
+    /// The largest uncertainty over its target. The default.
+    Minimax,
+    /// The mean square of the uncertainties over their targets.
+    A,
+    /// The volume of the confidence ellipsoid of all fitted terms.
+    D,
+}
+
+/// What a plan is asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlanProblem {
+    /// Lowest and highest angle of the table.
+    pub range: (Angle, Angle),
+    /// Step in which the dial is set.
+    pub step: Angle,
+    /// `σφ`: random error of setting an angle, standard.
+    pub setting_scatter: Angle,
+    /// `τ0`: scatter between positions that is the same at all angles, m/s², standard.
+    pub level_scatter_m_s2: f64,
+    /// Local gravity.
+    pub gravity: Gravity,
+    /// The sensor.
+    pub noise: PlanNoise,
+    /// The converter; `None`: its steps are small against everything else.
+    pub converter: Option<PlanConverter>,
+    /// Standard deviation of the bias between power-ups, m/s²; `None`: not known.
+    pub turn_on_m_s2: Option<f64>,
+    /// What no repetition averages out.
+    pub systematics: PlanSystematics,
+    /// How long things take.
+    pub times: PlanTimes,
+    /// Time for everything, s; `None`: as little as the targets need, or an hour without targets.
+    pub total_s: Option<f64>,
+    /// Dwells with the axis up and down, off the table, at the start of each run.
+    pub upright: Possible,
+    /// Turning the body by 180° on the platform between runs.
+    pub remounting: Possible,
+    /// Fitted beside bias, misalignment and scale error.
+    pub further_terms: Vec<Term>,
+    /// Rise of the temperature during a run, K; needed for [`Term::BiasPerKelvin`].
+    pub temperature_rise_k: f64,
+    /// Largest expanded uncertainties that still serve, by [`Term::index`]; `None`: this term is not wanted, it is only
+    /// fitted. All `None`: the defaults of [`Targets`] for the first three.
+    pub targets: [Option<f64>; 6],
+    /// What is made small.
+    pub criterion: Criterion,
+    /// Number of runs; `None`: chosen, at least three.
+    pub runs: Option<u32>,
+    /// Length of a dwell, s; `None`: chosen.
+    pub dwell_s: Option<f64>,
+    /// Angles that are there only to test the model.
+    pub spares: usize,
+    /// Level of confidence of expanded uncertainties.
+    pub level: f64,
+}
+
+impl PlanProblem {
+    /// A bench of ±`range` without anything known to be wrong, and the paper's table and times: 1° steps, a noise of
+    /// 78 µg√s, 3′ of setting scatter, 30 s to turn and settle.
+    #[must_use]
+    pub fn with_range(range: Angle) -> Self {
+        Self {
+            range: (Angle::from_rad(-range.rad()), range),
+            step: Angle::from_deg(1.0),
+            setting_scatter: Angle::from_arcmin(3.0),
+            level_scatter_m_s2: 0.0,
+            gravity: Gravity::normal(50.0, 150.0),
+            noise: PlanNoise { white_m_s2_rts: 7.6e-4, ..PlanNoise::default() },
+            converter: None,
+            turn_on_m_s2: None,
+            systematics: PlanSystematics::NONE,
+            times: PlanTimes { setting_s: 20.0, settle_s: 10.0, upright_s: 60.0, restart_s: 120.0 },
+            total_s: None,
+            upright: Possible::No,
+            remounting: Possible::No,
+            further_terms: Vec::new(),
+            temperature_rise_k: 0.0,
+            targets: [None; 6],
+            criterion: Criterion::Minimax,
+            runs: None,
+            dwell_s: None,
+            spares: DEFAULT_SPARES,
+            level: 0.95,
+        }
+    }
+
+    /// Terms that the adjustment fits, in order.
+    #[must_use]
+    pub fn terms(&self) -> Vec<Term> {
+        let further = |t: &Term| self.further_terms.contains(t);
+        let (first, rest) = Term::ALL.split_at(3);
+        first.iter().chain(rest.iter().filter(|t| further(t))).copied().collect()
+    }
+
+    /// Targets of the wanted terms, as asked or by default.
+    #[must_use]
+    pub fn wanted(&self) -> [Option<f64>; 6] {
+        if self.targets.iter().any(Option::is_some) {
+            return self.targets;
+        }
+        let [bias, misalignment, scale] = Targets::default().in_order();
+        [Some(bias), Some(misalignment), Some(scale), None, None, None]
+    }
+
+    /// What an uncertainty of a term is measured in: its target, or a size of the same order where it is not wanted.
+    pub(super) fn unit(&self, term: Term) -> f64 {
+        let [bias, misalignment, scale] = Targets::default().in_order();
+        let g = self.gravity.value_m_s2;
+        self.wanted()[term.index()].unwrap_or(match term {
+            Term::Bias => bias,
+            Term::Misalignment => misalignment,
+            Term::ScaleError => scale,
+            Term::K2 => bias / (g * g),
+            Term::K3 => bias / (g * g * g),
+            Term::BiasPerKelvin => bias,
+        })
+    }
+}
+
+/// Three: enough to tell a bow from an S, and one for what is neither.
+pub const DEFAULT_SPARES: usize = 3;

@@ -1,0 +1,14 @@
+//! Plans as files: what is asked for (`bench.toml`), what was planned (`plan.toml`, JSON).
+
+mod document;
+mod plan_file;
+mod request;
+mod settings;
+
+pub use document::{
+    PlanDocument, PlannedGain, PlannedOrder, PlannedPaper, PlannedPosition, PlannedRuns,
+    PlannedSource, PlannedTerm,
+};
+pub use plan_file::{PlanFile, plan_toml, read_plan_file};
+pub use request::{PlanRequest, plan_request};
+pub use settings::PlanSettings;
