@@ -133,7 +133,7 @@ fn run_effects(
     let sites = Sites::of(estimate, positions, setting, with.inputs.temperature_spread_k)?;
     let fitted = estimate.terms.iter().filter_map(|t| {
         let replaces = terms::replaced(t.term);
-        let lsb = pattern(replaces?, &sites, setting)?;
+        let lsb = pattern(replaces?, &sites)?;
         Some(ExtraColumn { lsb, replaces })
     });
     effects(estimate, positions, setting, with.inputs, &fitted.collect::<Vec<_>>())

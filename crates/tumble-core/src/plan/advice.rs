@@ -1,10 +1,11 @@
 //! What would make the result better, each reckoned through.
 
 use super::layout::{Layout, layout};
-use super::predict::{Prediction, predict_plan};
+use super::predict::{Prediction, Source, predict_plan};
 use super::problem::{PlanProblem, Possible, Term};
 use super::search;
 use crate::Angle;
+use crate::systematic::{Input, Inputs};
 
 /// Something that can be done about a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -109,7 +110,6 @@ pub(super) fn gains(problem: &PlanProblem, plan: &Layout, total_s: f64) -> Vec<G
 fn with(problem: &PlanProblem, plan: &Layout, total_s: f64, lever: Lever) -> Option<Prediction> {
     let mut other = problem.clone();
     let half = |a: Angle| Angle::from_rad(0.5 * a.rad());
-    let s = &mut other.systematics;
     match lever {
         Lever::Minute => return Some(longer(problem, &plan.prediction, 1.0 + 60.0 / total_s)),
         Lever::TwiceTheTime => {
@@ -117,15 +117,8 @@ fn with(problem: &PlanProblem, plan: &Layout, total_s: f64, lever: Lever) -> Opt
         }
         Lever::TwoRuns => return predict_plan(problem, &plan.sites, plan.dwell_s, plan.runs + 2),
         Lever::Setting => other.setting_scatter = half(problem.setting_scatter),
-        Lever::Level => {
-            s.axis_tilt = half(s.axis_tilt);
-            s.sensor_lean = half(s.sensor_lean);
-            s.dial_zero = half(s.dial_zero);
-        }
-        Lever::Dial => {
-            s.dial_scale *= 0.5;
-            s.eccentricity = half(s.eccentricity);
-        }
+        Lever::Level => halve(&mut other.systematics, Source::TiltAndLean, Source::DialZero),
+        Lever::Dial => halve(&mut other.systematics, Source::DialScale, Source::Eccentricity),
         Lever::Gravity if problem.gravity.standard_uncertainty_m_s2 > MEASURED_GRAVITY_M_S2 => {
             other.gravity.standard_uncertainty_m_s2 = MEASURED_GRAVITY_M_S2;
         }
@@ -150,6 +143,14 @@ fn with(problem: &PlanProblem, plan: &Layout, total_s: f64, lever: Lever) -> Opt
     predict_plan(&other, &plan.sites, plan.dwell_s, plan.runs)
 }
 
+/// Halves what two sources come from.
+fn halve(inputs: &mut Inputs, one: Source, two: Source) {
+    let of_them = |l: &&mut Input| {
+        Source::of(l.quantity).is_some_and(|s| s == one || s == two)
+    };
+    inputs.lines.iter_mut().filter(of_them).for_each(|l| *l = l.scaled(0.5));
+}
+
 /// 1 mGal: any gravimeter, or a gravity base station within a few kilometres.
 const MEASURED_GRAVITY_M_S2: f64 = 1e-5;
 
@@ -164,14 +165,14 @@ fn longer(problem: &PlanProblem, p: &Prediction, factor: f64) -> Prediction {
     let mut out = p.clone();
     for t in &mut out.terms {
         for (source, u) in &mut t.sources {
-            if source.averages_out() && *source != super::Source::BetweenRuns {
+            if source.averages_out() && *source != Source::BetweenRuns {
                 *u /= factor.sqrt();
             }
         }
         let sum = |keep: &dyn Fn(super::Source) -> bool| {
             t.sources.iter().filter(|s| keep(s.0)).map(|s| s.1 * s.1).sum::<f64>().sqrt()
         };
-        (t.u, t.u_statistical) = (sum(&|_| true), sum(&super::Source::averages_out));
+        (t.u, t.u_statistical) = (sum(&|_| true), sum(&Source::averages_out));
     }
     debug_assert_eq!(problem.terms().len(), out.terms.len());
     out

@@ -23,7 +23,7 @@ pub(super) struct Rows<'a> {
 impl<'a> Rows<'a> {
     pub fn new(problem: &'a PlanProblem, dwell_s: f64) -> Self {
         let lag_s = dwell_s + problem.times.setting_s + problem.times.settle_s;
-        let terms = problem.terms().into_iter().filter(|t| *t != Term::BiasPerKelvin).collect();
+        let terms = problem.terms().into_iter().filter(|t| !t.needs_temperature()).collect();
         let neighbours = short_term(&problem.noise, lag_s, dwell_s);
         Self { problem, dwell_s, terms, neighbours }
     }
@@ -41,7 +41,7 @@ impl<'a> Rows<'a> {
         let sd = self.variance(site).sqrt();
         let mut row = [0.0; MOST];
         for (x, term) in row.iter_mut().zip(&self.terms) {
-            *x = term.column(site, g) * self.problem.unit(*term) / sd;
+            *x = term.column(site, g, 0.0) * self.problem.unit(*term) / sd;
         }
         row
     }
@@ -92,7 +92,7 @@ impl Criterion {
 
 /// Standard deviation of what the lean of an upright dwell costs, m/s², beside its expectation.
 pub(super) fn upright_lean_m_s2(problem: &PlanProblem) -> f64 {
-    let u = problem.systematics.upright_lean.rad();
+    let u = problem.upright_lean.rad();
     problem.gravity.value_m_s2 * u * u / 2f64.sqrt()
 }
 

@@ -67,7 +67,16 @@ pub(super) struct Estimator {
 impl Estimator {
     /// Weighted least squares, the weights being those of [`Rows`]. `None` where the sites do not tell the terms apart.
     pub fn of(rows: &Rows<'_>, sites: &[Site], timeline: &Timeline) -> Option<Self> {
-        let terms = rows.problem.terms();
+        Self::fitting(rows, sites, timeline, rows.problem.terms())
+    }
+
+    /// The same with other terms than the problem asks for.
+    pub fn fitting(
+        rows: &Rows<'_>,
+        sites: &[Site],
+        timeline: &Timeline,
+        terms: Vec<Term>,
+    ) -> Option<Self> {
         let time = timeline.linear();
         let x: Vec<Row> =
             sites.iter().zip(&time).map(|(s, t)| Self::row(rows, &terms, *s, *t)).collect();
@@ -89,10 +98,7 @@ impl Estimator {
         let mut row = [0.0; MOST];
         let (g, sd) = (rows.problem.gravity.value_m_s2, rows.variance(site).sqrt());
         for (x, term) in row.iter_mut().zip(terms) {
-            let column = match term {
-                Term::BiasPerKelvin => time * rows.problem.temperature_rise_k,
-                _ => term.column(site, g),
-            };
+            let column = term.column(site, g, time * rows.problem.temperature_rise_k);
             *x = column * rows.problem.unit(*term) / sd;
         }
         row

@@ -17,6 +17,7 @@ mod predict;
 mod problem;
 mod relax;
 mod search;
+mod shared;
 mod spare;
 mod variance;
 
@@ -25,10 +26,11 @@ pub use order::OrderEffect;
 pub use phases::DITHERED_LSB;
 pub use predict::{Prediction, Source, TermPrediction, predict_plan};
 pub use problem::{
-    Criterion, DEFAULT_SPARES, PlanConverter, PlanNoise, PlanProblem, PlanSystematics, PlanTimes,
-    Possible, Site, Term, curvature_of_limit,
+    Criterion, DEFAULT_SPARES, PlanConverter, PlanNoise, PlanProblem, PlanTimes, Possible,
+    Site, TERMS, Term,
 };
 
+use crate::systematic::Input;
 use layout::{Layout, run_s};
 
 /// Time where neither time nor targets were given, s.
@@ -327,11 +329,11 @@ fn check(p: &PlanProblem) -> Result<(), PlanError> {
     if p.total_s.is_some_and(|t| t > LONGEST_TOTAL_S) {
         return wrong("time", p.total_s.unwrap_or(0.0), "at most a week, in s");
     }
-    if p.terms().contains(&Term::BiasPerKelvin) && p.temperature_rise_k <= 0.0 {
+    if p.terms().iter().any(|t| t.needs_temperature()) && p.temperature_rise_k <= 0.0 {
         return wrong(
             "rise of temperature",
             0.0,
-            "how much it rises during a run, K, to fit bias per kelvin",
+            "how much it rises during a run, K, to fit what it does",
         );
     }
     if let Some(t) =
@@ -354,7 +356,6 @@ fn check(p: &PlanProblem) -> Result<(), PlanError> {
 /// Refuses sizes that no quantity has.
 fn check_sizes(p: &PlanProblem) -> Result<(), PlanError> {
     let wrong = |name, value, expected| Err(PlanError::Value { name, value, expected });
-    let s = &p.systematics;
     let not_negative = [
         ("scatter of angles", p.setting_scatter.rad()),
         ("scatter of the level", p.level_scatter_m_s2),
@@ -364,14 +365,7 @@ fn check_sizes(p: &PlanProblem) -> Result<(), PlanError> {
         ("drift", p.noise.ramp_m_s3),
         ("spread between power-ups", p.turn_on_m_s2.unwrap_or(0.0)),
         ("uncertainty of gravity", p.gravity.standard_uncertainty_m_s2),
-        ("scale of the dial", s.dial_scale),
-        ("eccentricity", s.eccentricity.rad()),
-        ("zero of the dial", s.dial_zero.rad()),
-        ("tilt of the axis", s.axis_tilt.rad()),
-        ("lean of the sensor", s.sensor_lean.rad()),
-        ("lean of upright dwells", s.upright_lean.rad()),
-        ("K2", s.k2_per_m_s2),
-        ("K3", s.k3_per_m2_s4),
+        ("lean of upright dwells", p.upright_lean.rad()),
         ("time to set", p.times.setting_s),
         ("time to settle", p.times.settle_s),
         ("time to stand upright", p.times.upright_s),
@@ -380,6 +374,10 @@ fn check_sizes(p: &PlanProblem) -> Result<(), PlanError> {
     ];
     if let Some((name, value)) = not_negative.iter().find(|(_, v)| !(v.is_finite() && *v >= 0.0)) {
         return wrong(name, *value, "a finite number, zero or more");
+    }
+    let uncertain = |l: &&Input| !(l.standard_uncertainty.is_finite() && l.standard_uncertainty >= 0.0);
+    if let Some(l) = p.systematics.lines.iter().find(uncertain) {
+        return wrong(l.quantity.name(), l.standard_uncertainty, "a finite number, zero or more");
     }
     let positive = [
         ("gravity", Some(p.gravity.value_m_s2)),

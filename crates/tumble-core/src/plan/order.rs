@@ -213,7 +213,7 @@ pub(super) fn effects(rows: &Rows<'_>, sites: &[Site]) -> Option<Vec<OrderEffect
         terms
             .into_iter()
             .zip(before.into_iter().zip(after))
-            .filter(|(t, _)| *t != Term::BiasPerKelvin)
+            .filter(|(t, _)| !t.needs_temperature())
             .map(|(term, (b, a))| OrderEffect {
                 term,
                 linear_sorted: b[0],

@@ -1,10 +1,12 @@
 //! What a plan will know, by source.
 
-use super::candidates::{Rows, upright_lean_m_s2};
+use super::candidates::Rows;
 use super::estimator::{Estimator, Timeline, quadratic};
-use super::problem::{PlanProblem, Possible, Site, Term};
+use super::problem::{PlanProblem, Site, Term};
+use super::shared::systematic;
 use super::variance::{DwellVariance, drift_covariance};
 use crate::stats::student_factor;
+use crate::systematic::Quantity;
 
 /// Where uncertainty comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,6 +37,10 @@ pub enum Source {
     UprightLean,
     /// Nonlinearity of the sensor that is not fitted.
     Nonlinearity,
+    /// Nonlinearity and reference of the converter.
+    Converter,
+    /// Temperature on bias and scale factor that is not fitted.
+    Temperature,
 }
 
 impl Source {
@@ -55,6 +61,8 @@ impl Source {
             Self::TiltAndLean => "tilt_and_lean",
             Self::UprightLean => "upright_lean",
             Self::Nonlinearity => "nonlinearity",
+            Self::Converter => "converter",
+            Self::Temperature => "temperature",
         }
     }
 
@@ -75,7 +83,26 @@ impl Source {
             Self::TiltAndLean => "axis tilt, sensor lean",
             Self::UprightLean => "lean of upright dwells",
             Self::Nonlinearity => "K2, K3 left out",
+            Self::Converter => "the converter",
+            Self::Temperature => "temperature left out",
         }
+    }
+
+    /// Where a line of the budget is counted; `None` for rounding, which scatters from angle to angle.
+    #[must_use]
+    pub fn of(quantity: Quantity) -> Option<Self> {
+        use Quantity as Q;
+        Some(match quantity {
+            Q::Gravity => Self::Gravity,
+            Q::DialScale => Self::DialScale,
+            Q::EccentricitySine | Q::EccentricityCosine => Self::Eccentricity,
+            Q::DialZero => Self::DialZero,
+            Q::TiltTimesLean | Q::TiltAndLeanCosine => Self::TiltAndLean,
+            Q::ConverterBow | Q::ConverterS | Q::Reference => Self::Converter,
+            Q::Quadratic | Q::Cubic => Self::Nonlinearity,
+            Q::BiasTempco | Q::ScaleTempco => Self::Temperature,
+            Q::Resolution => return None,
+        })
     }
 
     /// Whether more dwells and runs make it smaller.
@@ -191,7 +218,7 @@ pub fn predict_plan(
     let estimator = Estimator::of(&rows, sites, &timeline)?;
     let scatter = statistical(problem, sites, dwell_s);
     let drift = drift_covariance(&problem.noise, &timeline.centres_s, dwell_s);
-    let systematic = systematic(problem, sites, runs, &estimator.terms);
+    let systematic = systematic(&rows, sites, runs, &timeline);
     let n = f64::from(runs);
     let dof = match runs {
         0 => return None,
@@ -209,9 +236,8 @@ pub fn predict_plan(
         if let (Term::Bias, true, Some(w)) = (term, runs > 1, problem.turn_on_m_s2) {
             sources.push((Source::BetweenRuns, w / n.sqrt()));
         }
-        for (source, shapes) in &systematic {
-            let u2: f64 = shapes.iter().map(|f| estimator.shift(i, f).powi(2)).sum();
-            sources.push((*source, u2.sqrt()));
+        for (source, disturbance) in &systematic {
+            add(&mut sources, *source, estimator.shift(i, disturbance));
         }
         // What is nothing but rounding of the computer is nothing.
         sources.retain(|s| s.1 > 1e-12 * problem.unit(*term));
@@ -245,62 +271,10 @@ fn statistical(problem: &PlanProblem, sites: &[Site], dwell_s: f64) -> Vec<(Sour
     ]
 }
 
-/// What all runs share: by source, one or more independent disturbances of the dwells, m/s², one standard uncertainty each.
-///
-/// Turned by 180° between runs, what is even in the dial's angle (its zero, the cosine of its eccentricity) and tilt times lean
-/// change their sign with the body, and fall out of the mean of as many runs each way.
-fn systematic(
-    problem: &PlanProblem,
-    sites: &[Site],
-    runs: u32,
-    terms: &[Term],
-) -> Vec<(Source, Vec<Vec<f64>>)> {
-    let s = &problem.systematics;
-    let g = problem.gravity.value_m_s2;
-    let shape = |f: &dyn Fn(Site) -> f64| sites.iter().map(|s| f(*s)).collect::<Vec<f64>>();
-    let table = |f: &dyn Fn(f64) -> f64| {
-        shape(&|site| if site.is_upright() { 0.0 } else { f(site.angle.rad()) })
-    };
-    let each = s.eccentricity.rad() / 2f64.sqrt();
-    let (tilt, lean) = (s.axis_tilt.rad(), s.sensor_lean.rad());
-    // With an odd number of runs one of them has no counterpart.
-    let one_way = match (problem.remounting, runs % 2) {
-        (Possible::No, _) => 1.0,
-        (Possible::Yes, 0) => 0.0,
-        (Possible::Yes, _) => 1.0 / f64::from(runs),
-    };
-    // Root mean square of (ψ² + η²)/2 about zero: its expectation is not corrected for.
-    let cosine =
-        (3.0 * tilt.powi(4) + 3.0 * lean.powi(4) + 2.0 * (tilt * lean).powi(2)).sqrt() / 2.0;
-    let upright = |index: usize| {
-        let mut f = vec![0.0; sites.len()];
-        f[index] = upright_lean_m_s2(problem);
-        f
-    };
-    let left_out = |term, u| if terms.contains(&term) { 0.0 } else { u };
-    let (k2, k3) = (left_out(Term::K2, s.k2_per_m_s2), left_out(Term::K3, s.k3_per_m2_s4));
-    vec![
-        (Source::Gravity, vec![shape(&|x| x.sine() * problem.gravity.standard_uncertainty_m_s2)]),
-        (Source::DialScale, vec![table(&|a| g * a.cos() * a * s.dial_scale)]),
-        (
-            Source::Eccentricity,
-            vec![
-                table(&|a| g * a.cos() * a.sin() * each),
-                table(&|a| g * a.cos() * (a.cos() - 1.0) * each * one_way),
-            ],
-        ),
-        (Source::DialZero, vec![table(&|a| g * a.cos() * s.dial_zero.rad() * one_way)]),
-        (
-            Source::TiltAndLean,
-            vec![table(&|_| g * tilt * lean * one_way), table(&|a| g * a.sin() * cosine)],
-        ),
-        (
-            Source::UprightLean,
-            (0..sites.len()).filter(|i| sites[*i].is_upright()).map(upright).collect(),
-        ),
-        (
-            Source::Nonlinearity,
-            vec![shape(&|x| (g * x.sine()).powi(2) * k2), shape(&|x| (g * x.sine()).powi(3) * k3)],
-        ),
-    ]
+/// Adds an independent part to a source.
+fn add(sources: &mut Vec<(Source, f64)>, source: Source, u: f64) {
+    match sources.iter_mut().find(|s| s.0 == source) {
+        Some(there) => there.1 = there.1.hypot(u),
+        None => sources.push((source, u.abs())),
+    }
 }

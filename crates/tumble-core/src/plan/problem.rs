@@ -1,5 +1,7 @@
 //! What a plan is asked for: bench, sensor, time, and what is wanted.
 
+use crate::estimate;
+use crate::systematic::{Inputs, Quantity};
 use crate::{Angle, Gravity, Seat, Targets};
 
 /// What a plan can be asked to determine.
@@ -17,17 +19,41 @@ pub enum Term {
     K3,
     /// Bias per kelvin, m/s²/K: temperature that rises evenly during a run.
     BiasPerKelvin,
+    /// Scale factor per kelvin, 1/K.
+    ScalePerKelvin,
 }
+
+/// Terms that a plan can be asked for.
+pub const TERMS: usize = 7;
 
 impl Term {
     /// All, in the order of every array.
-    pub const ALL: [Self; 6] =
-        [Self::Bias, Self::Misalignment, Self::ScaleError, Self::K2, Self::K3, Self::BiasPerKelvin];
+    pub const ALL: [Self; TERMS] = [
+        Self::Bias,
+        Self::Misalignment,
+        Self::ScaleError,
+        Self::K2,
+        Self::K3,
+        Self::BiasPerKelvin,
+        Self::ScalePerKelvin,
+    ];
 
     /// Index in arrays.
     #[must_use]
     pub fn index(self) -> usize {
         self as usize
+    }
+
+    /// The further term of the adjustment that it is; `None` for the first three.
+    #[must_use]
+    pub fn further(self) -> Option<estimate::Term> {
+        match self {
+            Self::Bias | Self::Misalignment | Self::ScaleError => None,
+            Self::K2 => Some(estimate::Term::K2),
+            Self::K3 => Some(estimate::Term::K3),
+            Self::BiasPerKelvin => Some(estimate::Term::TempBias),
+            Self::ScalePerKelvin => Some(estimate::Term::TempScale),
+        }
     }
 
     /// Name in files and on the command line.
@@ -37,9 +63,7 @@ impl Term {
             Self::Bias => "bias",
             Self::Misalignment => "misalignment",
             Self::ScaleError => "scale",
-            Self::K2 => "k2",
-            Self::K3 => "k3",
-            Self::BiasPerKelvin => "temperature",
+            _ => self.further().map_or("", estimate::Term::name),
         }
     }
 
@@ -51,22 +75,39 @@ impl Term {
             Self::K2 => "K2",
             Self::K3 => "K3",
             Self::BiasPerKelvin => "bias per kelvin",
+            Self::ScalePerKelvin => "scale per kelvin",
             _ => self.name(),
         }
     }
 
-    /// Element of a position's equation, as in equation (6) of the method with `+ K2 a² + K3 a³`; zero for what
-    /// depends on time alone.
+    /// Whether it needs a change of temperature: time tells it, not angles alone.
     #[must_use]
-    pub fn column(self, site: Site, gravity_m_s2: f64) -> f64 {
+    pub fn needs_temperature(self) -> bool {
+        self.further().is_some_and(estimate::Term::needs_temperature)
+    }
+
+    /// The systematic error whose place it takes where it is fitted.
+    #[must_use]
+    pub fn replaces(self) -> Option<Quantity> {
+        match self {
+            Self::Bias | Self::Misalignment | Self::ScaleError => None,
+            Self::K2 => Some(Quantity::Quadratic),
+            Self::K3 => Some(Quantity::Cubic),
+            Self::BiasPerKelvin => Some(Quantity::BiasTempco),
+            Self::ScalePerKelvin => Some(Quantity::ScaleTempco),
+        }
+    }
+
+    /// Element of a position's equation, as in equation (6) of the method with `+ K2 a² + K3 a³` and temperature on bias and
+    /// scale, `warmth_k` above the run's mean.
+    #[must_use]
+    pub fn column(self, site: Site, gravity_m_s2: f64, warmth_k: f64) -> f64 {
         let a = gravity_m_s2 * site.sine();
         match self {
             Self::Bias => 1.0,
             Self::Misalignment => gravity_m_s2 * site.cosine(),
             Self::ScaleError => -a,
-            Self::K2 => a * a,
-            Self::K3 => a * a * a,
-            Self::BiasPerKelvin => 0.0,
+            _ => self.further().map_or(0.0, |t| t.basis(a, warmth_k)),
         }
     }
 }
@@ -136,54 +177,6 @@ pub struct PlanConverter {
     pub rate_hz: f64,
 }
 
-/// Standard uncertainties that stay the same for all positions and runs.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PlanSystematics {
-    /// Scale of the dial, relative.
-    pub dial_scale: f64,
-    /// Amplitude of the dial's once-a-turn error, root mean square; any phase.
-    pub eccentricity: Angle,
-    /// Zero of the dial and level of the table.
-    pub dial_zero: Angle,
-    /// Tilt of the table's axis out of the horizontal.
-    pub axis_tilt: Angle,
-    /// Lean of the sensitive axis out of the plane in which the table turns.
-    pub sensor_lean: Angle,
-    /// Lean of upright dwells.
-    pub upright_lean: Angle,
-    /// K2 where it is not fitted, (m/s²)/(m/s²)².
-    pub k2_per_m_s2: f64,
-    /// K3 where it is not fitted, (m/s²)/(m/s²)³.
-    pub k3_per_m2_s4: f64,
-}
-
-impl PlanSystematics {
-    /// A table and a sensor without systematic errors.
-    pub const NONE: Self = Self {
-        dial_scale: 0.0,
-        eccentricity: Angle::from_rad(0.0),
-        dial_zero: Angle::from_rad(0.0),
-        axis_tilt: Angle::from_rad(0.0),
-        sensor_lean: Angle::from_rad(0.0),
-        upright_lean: Angle::from_rad(0.0),
-        k2_per_m_s2: 0.0,
-        k3_per_m2_s4: 0.0,
-    };
-}
-
-/// K2 and K3 that a limit of nonlinearity (a share of full scale) leaves room for, as standard uncertainties.
-///
-/// **Model** over ±A the deviation from the best straight line reaches `n`; bow and S share its variance. A bow `K2 a²` is off
-/// its best line by `K2 A²/2`, an S `K3 a³` by `K3 A³/4`: `K2 = √2 n/A²`, `K3 = 2√2 n/A³`.
-///
-/// **Units** `(m/s²)/(m/s²)²` and `(m/s²)/(m/s²)³`.
-#[must_use]
-pub fn curvature_of_limit(share: f64, full_scale_m_s2: f64) -> (f64, f64) {
-    let n = share * full_scale_m_s2;
-    let root = 2f64.sqrt();
-    (root * n / full_scale_m_s2.powi(2), 2.0 * root * n / full_scale_m_s2.powi(3))
-}
-
 /// How long things take.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanTimes {
@@ -236,8 +229,10 @@ pub struct PlanProblem {
     pub converter: Option<PlanConverter>,
     /// Standard deviation of the bias between power-ups, m/s²; `None`: not known.
     pub turn_on_m_s2: Option<f64>,
-    /// What no repetition averages out.
-    pub systematics: PlanSystematics,
+    /// What no repetition averages out, as the budget knows it.
+    pub systematics: Inputs,
+    /// Lean of upright dwells, standard.
+    pub upright_lean: Angle,
     /// How long things take.
     pub times: PlanTimes,
     /// Time for everything, s; `None`: as little as the targets need, or an hour without targets.
@@ -248,11 +243,12 @@ pub struct PlanProblem {
     pub remounting: Possible,
     /// Fitted beside bias, misalignment and scale error.
     pub further_terms: Vec<Term>,
-    /// Rise of the temperature during a run, K; needed for [`Term::BiasPerKelvin`].
+    /// Rise of the temperature during a run, K: terms that depend on it are fitted to it; it is even, whatever the budget's
+    /// [`Inputs::temperature_spread_k`] allows for where they are not.
     pub temperature_rise_k: f64,
     /// Largest expanded uncertainties that still serve, by [`Term::index`]; `None`: this term is not wanted, it is only
     /// fitted. All `None`: the defaults of [`Targets`] for the first three.
-    pub targets: [Option<f64>; 6],
+    pub targets: [Option<f64>; TERMS],
     /// What is made small.
     pub criterion: Criterion,
     /// Number of runs; `None`: chosen, at least three.
@@ -279,14 +275,15 @@ impl PlanProblem {
             noise: PlanNoise { white_m_s2_rts: 7.6e-4, ..PlanNoise::default() },
             converter: None,
             turn_on_m_s2: None,
-            systematics: PlanSystematics::NONE,
+            systematics: Inputs::NONE,
+            upright_lean: Angle::from_rad(0.0),
             times: PlanTimes { setting_s: 20.0, settle_s: 10.0, upright_s: 60.0, restart_s: 120.0 },
             total_s: None,
             upright: Possible::No,
             remounting: Possible::No,
             further_terms: Vec::new(),
             temperature_rise_k: 0.0,
-            targets: [None; 6],
+            targets: [None; TERMS],
             criterion: Criterion::Minimax,
             runs: None,
             dwell_s: None,
@@ -305,12 +302,12 @@ impl PlanProblem {
 
     /// Targets of the wanted terms, as asked or by default.
     #[must_use]
-    pub fn wanted(&self) -> [Option<f64>; 6] {
+    pub fn wanted(&self) -> [Option<f64>; TERMS] {
         if self.targets.iter().any(Option::is_some) {
             return self.targets;
         }
         let [bias, misalignment, scale] = Targets::default().in_order();
-        [Some(bias), Some(misalignment), Some(scale), None, None, None]
+        [Some(bias), Some(misalignment), Some(scale), None, None, None, None]
     }
 
     /// What an uncertainty of a term is measured in: its target, or a size of the same order where it is not wanted.
@@ -324,6 +321,7 @@ impl PlanProblem {
             Term::K2 => bias / (g * g),
             Term::K3 => bias / (g * g * g),
             Term::BiasPerKelvin => bias,
+            Term::ScalePerKelvin => scale,
         })
     }
 }

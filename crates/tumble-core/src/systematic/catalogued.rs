@@ -3,7 +3,9 @@
 use super::quantity::{Quantity, Shape};
 use super::{Input, Systematics};
 use crate::sensor_type::axis_letter;
-use crate::{Experiment, LimitOf, Mark, STANDARD_GRAVITY_M_S2, SensorMode, SensorType, TypeLimit};
+use crate::{
+    LimitOf, Mark, Output, STANDARD_GRAVITY_M_S2, Sensor, SensorMode, SensorType, TypeLimit,
+};
 
 /// Default of u(K2) without a catalogue's entry: 100 µg/g², (m/s²)/(m/s²)².
 ///
@@ -15,11 +17,15 @@ pub const DEFAULT_K2_PER_M_S2: f64 = 100e-6 / STANDARD_GRAVITY_M_S2;
 pub const DEFAULT_K3_PER_M2_S4: f64 = 100e-6 / (STANDARD_GRAVITY_M_S2 * STANDARD_GRAVITY_M_S2);
 
 /// K2, K3 and temperature coefficients of an experiment.
-pub(super) fn lines(experiment: &Experiment, nominal_scale_m_s2_per_lsb: f64) -> Vec<Input> {
-    let stated = &experiment.bench.systematics;
-    let sheet = experiment.sensor.kind.as_ref().map(|kind| {
-        let mode = nearest(kind, &experiment.output.unit, nominal_scale_m_s2_per_lsb);
-        Sheet { kind, mode, axis: axis_letter(&experiment.sensor.axis) }
+pub(super) fn lines(
+    sensor: &Sensor,
+    output: &Output,
+    stated: &Systematics,
+    nominal_scale_m_s2_per_lsb: f64,
+) -> Vec<Input> {
+    let sheet = sensor.kind.as_ref().map(|kind| {
+        let mode = nearest(kind, &output.unit, nominal_scale_m_s2_per_lsb);
+        Sheet { kind, mode, axis: axis_letter(&sensor.axis) }
     });
     let mut out: Vec<Input> = curvature(stated, sheet.as_ref()).into();
     out.extend(tempco(sheet.as_ref()));

@@ -60,7 +60,7 @@ pub fn effects(
     let effect = |input: &Input| {
         let quantity = input.quantity;
         let mut terms = vec![0.0; extra.len()];
-        let sensitivity = match pattern(quantity, &sites, setting) {
+        let sensitivity = match pattern(quantity, &sites) {
             Some(lsb) => {
                 let shift = linearized.shift(&lsb);
                 terms = shift.terms;

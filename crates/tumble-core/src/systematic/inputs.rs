@@ -1,8 +1,10 @@
 //! What stands for each quantity of the budget, and why: as stated, or a default with its reason.
 
-use super::catalogued;
 use super::quantity::{Quantity, Shape};
-use crate::{ARCMIN_RAD, Angle, Experiment, GravitySource, Quantizer, Seat};
+use super::{Systematics, catalogued};
+use crate::{
+    ARCMIN_RAD, Angle, Bench, Experiment, GravitySource, Output, Quantizer, Seat, Sensor,
+};
 
 /// Limits of what a dial is as accurate as, where no setting error is stated: the table of the paper is set by hand "to a few
 /// arcminutes" (method section 1). A rectangle of that half width: 1/√3 of it is the standard uncertainty.
@@ -24,6 +26,22 @@ pub struct Input {
     pub shape: Shape,
     /// `stated`, or where the default comes from.
     pub source: String,
+}
+
+impl Input {
+    /// The same with what it comes from (angles, for tilt and lean) so many times as large.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let larger = |u_rad: [f64; 2]| u_rad.map(|u| factor * u);
+        let shape = match self.shape {
+            Shape::Product { u_rad } => Shape::Product { u_rad: larger(u_rad) },
+            Shape::HalfSquares { u_rad } => Shape::HalfSquares { u_rad: larger(u_rad) },
+            plain => plain,
+        };
+        let plain = factor * self.standard_uncertainty;
+        let standard_uncertainty = shape.own_uncertainty().unwrap_or(plain);
+        Self { shape, standard_uncertainty, ..self.clone() }
+    }
 }
 
 /// All quantities of an experiment, common to its runs.
@@ -52,14 +70,40 @@ impl Inputs {
     /// ```
     #[must_use]
     pub fn of(experiment: &Experiment, nominal_scale_m_s2_per_lsb: f64) -> Self {
-        let mut lines = vec![gravity(experiment)];
-        lines.extend(dial(experiment));
-        lines.extend(tilt_and_lean(experiment));
-        lines.extend(converter(experiment));
-        lines.extend(catalogued::lines(experiment, nominal_scale_m_s2_per_lsb));
-        let stated = experiment.bench.systematics.temperature_spread_k;
-        Self { lines, temperature_spread_k: stated.unwrap_or(DEFAULT_TEMPERATURE_SPREAD_K) }
+        let on_table = |p: &&crate::Position| p.seat == Seat::Table;
+        let largest = experiment
+            .runs
+            .iter()
+            .flat_map(|r| &r.positions)
+            .filter(on_table)
+            .map(|p| p.angle.rad().abs())
+            .fold(0.0, f64::max);
+        let Experiment { sensor, output, bench, .. } = experiment;
+        let largest = Angle::from_rad(largest);
+        Self::before_any_run(sensor, output, bench, largest, nominal_scale_m_s2_per_lsb)
     }
+
+    /// The same for measurements that are still to come, at angles up to `largest`.
+    #[must_use]
+    pub fn before_any_run(
+        sensor: &Sensor,
+        output: &Output,
+        bench: &Bench,
+        largest: Angle,
+        nominal_scale_m_s2_per_lsb: f64,
+    ) -> Self {
+        let mut lines = vec![gravity(bench)];
+        lines.extend(dial(bench, largest));
+        lines.extend(tilt_and_lean(bench));
+        lines.extend(converter(output, &bench.systematics));
+        let stated = &bench.systematics;
+        lines.extend(catalogued::lines(sensor, output, stated, nominal_scale_m_s2_per_lsb));
+        let spread = stated.temperature_spread_k;
+        Self { lines, temperature_spread_k: spread.unwrap_or(DEFAULT_TEMPERATURE_SPREAD_K) }
+    }
+
+    /// No systematic errors at all.
+    pub const NONE: Self = Self { lines: Vec::new(), temperature_spread_k: 0.0 };
 
     /// The line of a quantity.
     #[must_use]
@@ -80,8 +124,8 @@ fn stated_or(quantity: Quantity, given: Option<f64>, default: f64, reason: &str)
     }
 }
 
-fn gravity(experiment: &Experiment) -> Input {
-    let g = &experiment.bench.gravity;
+fn gravity(bench: &Bench) -> Input {
+    let g = &bench.gravity;
     let (shape, source) = match g.source {
         GravitySource::Stated => (Shape::Normal, "stated".into()),
         GravitySource::StatedWithoutUncertainty => {
@@ -107,25 +151,18 @@ fn gravity(experiment: &Experiment) -> Input {
 /// **Model** a dial is as accurate as it is set: scale error = accuracy over the end of the table's range (the largest angle used,
 /// where none is stated or that is larger), eccentricity = accuracy.
 /// An amplitude `e` of unknown phase is two independent components of `e/√2` each.
-fn dial(experiment: &Experiment) -> [Input; 4] {
-    let stated = &experiment.bench.systematics;
-    let setting = experiment.bench.angle_uncertainty;
+fn dial(bench: &Bench, largest: Angle) -> [Input; 4] {
+    let stated = &bench.systematics;
+    let setting = bench.angle_uncertainty;
     let accuracy = setting.unwrap_or(Angle::from_arcmin(DEFAULT_ACCURACY_ARCMIN / 3f64.sqrt()));
     let words = match setting {
         Some(s) if s.rad() == 0.0 => "angles stated as exact".to_owned(),
         Some(s) => format!("{}′, the stated setting error", shown(s.arcmin())),
         None => format!("±{DEFAULT_ACCURACY_ARCMIN}′, a table that is set by hand"),
     };
-    let on_table = |p: &&crate::Position| p.seat == Seat::Table;
     // The scale of the whole dial, where its range is stated.
-    let range = experiment.bench.range.map_or(0.0, |(lo, hi)| lo.rad().abs().max(hi.rad().abs()));
-    let largest = experiment
-        .runs
-        .iter()
-        .flat_map(|r| &r.positions)
-        .filter(on_table)
-        .map(|p| p.angle.rad().abs())
-        .fold(range, f64::max);
+    let range = bench.range.map_or(0.0, |(lo, hi)| lo.rad().abs().max(hi.rad().abs()));
+    let largest = range.max(largest.rad());
     let scale = if largest > 0.0 { accuracy.rad() / largest } else { 0.0 };
     let of_scale = match accuracy.rad() > 0.0 {
         true => format!("default: {words}, over {}°", shown(largest.to_degrees())),
@@ -154,8 +191,8 @@ fn dial(experiment: &Experiment) -> [Input; 4] {
 }
 
 /// Tilt of the table's axis and lean of the sensor out of the plane in which it turns.
-fn tilt_and_lean(experiment: &Experiment) -> [Input; 2] {
-    let stated = &experiment.bench.systematics;
+fn tilt_and_lean(bench: &Bench) -> [Input; 2] {
+    let stated = &bench.systematics;
     let default = Angle::from_arcmin(DEFAULT_TILT_ARCMIN);
     let u = [stated.axis_tilt, stated.sensor_lean].map(|s| s.unwrap_or(default).rad());
     let says = |name: &str, given: Option<Angle>, u: f64| {
@@ -186,8 +223,7 @@ fn tilt_and_lean(experiment: &Experiment) -> [Input; 2] {
 ///
 /// **Model** a limit `L` of the deviation from a straight line, bow and S equally likely: where both reach their peak, at the
 /// ends of the range, their variance is that of a rectangle ±L; so `u = L/√6` each.
-fn converter(experiment: &Experiment) -> [Input; 4] {
-    let stated = &experiment.bench.systematics;
+fn converter(output: &Output, stated: &Systematics) -> [Input; 4] {
     let not_stated = "default: not stated, taken as zero";
     let bent = |q| {
         let mut line = stated_or(q, stated.nonlinearity_lsb, 0.0, not_stated);
@@ -195,7 +231,7 @@ fn converter(experiment: &Experiment) -> [Input; 4] {
         line.shape = Shape::Rectangular;
         line
     };
-    let is_code = experiment.output.quantizer != Quantizer::None;
+    let is_code = output.quantizer != Quantizer::None;
     let step = if is_code { Some(1.0) } else { stated.resolution };
     let reason = if is_code { "one code" } else { "stated" };
     let resolution = Input {
@@ -221,7 +257,6 @@ fn shown(v: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Systematics;
     use super::*;
     use crate::simulate::{Preset, Truth, experiment, parse_plan};
 

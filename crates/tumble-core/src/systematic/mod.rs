@@ -18,7 +18,7 @@ pub use catalogued::{DEFAULT_K2_PER_M_S2, DEFAULT_K3_PER_M2_S4};
 pub use effect::{SystematicEffect, effects, upright_lean};
 pub use inputs::{DEFAULT_ACCURACY_ARCMIN, DEFAULT_TILT_ARCMIN, Input, Inputs};
 pub use linearized::{ExtraColumn, Linearized, Shift};
-pub use pattern::{Sites, pattern};
+pub use pattern::{Planned, Sites, pattern};
 pub use quantity::{Quantity, Shape};
 pub use resolution::left_over;
 pub use stated::Systematics;

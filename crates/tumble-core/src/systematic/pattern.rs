@@ -2,7 +2,7 @@
 
 use super::Quantity;
 use crate::estimate::{Estimate, Setting};
-use crate::{Position, Seat};
+use crate::{Angle, Position, Seat};
 
 /// One position as a systematic error sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,6 +27,18 @@ pub struct Sites {
     sites: Vec<Site>,
     /// `k*`, m/s² per LSB.
     scale_m_s2_per_lsb: f64,
+    gravity_m_s2: f64,
+}
+
+/// A position that is still to be measured, of a sensor without errors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Planned {
+    /// Table angle.
+    pub angle: Angle,
+    /// On the table or stood upright.
+    pub seat: Seat,
+    /// Temperature above the run's mean, K.
+    pub warmth_k: f64,
 }
 
 impl Sites {
@@ -42,29 +54,61 @@ impl Sites {
         let g = setting.bench.gravity.value_m_s2;
         let scale_m_s2_per_lsb = setting.nominal_scale_m_s2_per_lsb * (1.0 + scale_error);
         let warmth = warmth(positions, temperature_spread_k);
-        let mut sites: Vec<Site> = positions
+        let sites = positions
             .iter()
             .zip(warmth)
             .map(|(p, warmth_k)| {
-                let (sin, cos) = (p.angle.rad() + misalignment).sin_cos();
+                let planned = Planned { angle: p.angle, seat: p.seat, warmth_k };
                 let direction = p.record.dial.as_ref().map_or(1.0, |d| d.direction);
-                let (a, slope, table) = match p.seat {
-                    Seat::Table => (g * sin, g * cos, direction),
-                    Seat::Up => (g, 0.0, 0.0),
-                    Seat::Down => (-g, 0.0, 0.0),
-                };
-                Site {
-                    angle_rad: p.angle.rad(),
-                    acceleration_m_s2: a,
-                    slope_m_s2: slope,
-                    table,
-                    warmth_k,
-                    within_range: (a + bias) / scale_m_s2_per_lsb,
-                }
+                planned.site(misalignment, direction, g)
             })
             .collect();
+        Some(Self::new(sites, bias, scale_m_s2_per_lsb, g))
+    }
+
+    /// Positions of a run to come, the dial counting in `direction` (±1) as the body does.
+    #[must_use]
+    pub fn planned(
+        positions: &[Planned],
+        direction: f64,
+        gravity_m_s2: f64,
+        scale_m_s2_per_lsb: f64,
+    ) -> Self {
+        let site = |p: &Planned| p.site(0.0, direction, gravity_m_s2);
+        Self::new(positions.iter().map(site).collect(), 0.0, scale_m_s2_per_lsb, gravity_m_s2)
+    }
+
+    fn new(
+        mut sites: Vec<Site>,
+        bias_m_s2: f64,
+        scale_m_s2_per_lsb: f64,
+        gravity_m_s2: f64,
+    ) -> Self {
+        for s in &mut sites {
+            s.within_range = (s.acceleration_m_s2 + bias_m_s2) / scale_m_s2_per_lsb;
+        }
         to_unit_range(&mut sites);
-        Some(Self { sites, scale_m_s2_per_lsb })
+        Self { sites, scale_m_s2_per_lsb, gravity_m_s2 }
+    }
+}
+
+impl Planned {
+    /// As a systematic error sees it; its place in the range is still to be set.
+    fn site(self, misalignment_rad: f64, direction: f64, g: f64) -> Site {
+        let (sin, cos) = (self.angle.rad() + misalignment_rad).sin_cos();
+        let (acceleration_m_s2, slope_m_s2, table) = match self.seat {
+            Seat::Table => (g * sin, g * cos, direction),
+            Seat::Up => (g, 0.0, 0.0),
+            Seat::Down => (-g, 0.0, 0.0),
+        };
+        Site {
+            angle_rad: self.angle.rad(),
+            acceleration_m_s2,
+            slope_m_s2,
+            table,
+            warmth_k: self.warmth_k,
+            within_range: 0.0,
+        }
     }
 }
 
@@ -106,8 +150,8 @@ fn warmth(positions: &[&Position], spread_k: f64) -> Vec<f64> {
 /// tilt times lean `d g`, cosine of both `−g sin(φ+Δφ)`, converter `T2(t)` and `T3(t)` of the reading's place `t` in the range,
 /// K2 `a²`, K3 `a³`, temperature `T − T̄` and `a (T − T̄)`.
 #[must_use]
-pub fn pattern(quantity: Quantity, sites: &Sites, setting: &Setting<'_>) -> Option<Vec<f64>> {
-    let g = setting.bench.gravity.value_m_s2;
+pub fn pattern(quantity: Quantity, sites: &Sites) -> Option<Vec<f64>> {
+    let g = sites.gravity_m_s2;
     let in_m_s2 = |f: fn(&Site) -> f64| {
         Some(sites.sites.iter().map(|s| f(s) / sites.scale_m_s2_per_lsb).collect())
     };

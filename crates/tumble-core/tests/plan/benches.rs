@@ -1,13 +1,35 @@
 //! Ten benches, from a hand-turned table to a dividing head.
 
-use tumble_core::plan::{
-    Criterion, PlanConverter, PlanNoise, PlanProblem, PlanSystematics, Possible, Term,
+use tumble_core::plan::{Criterion, PlanConverter, PlanNoise, PlanProblem, Possible, Term};
+use tumble_core::systematic::{Inputs, Systematics};
+use tumble_core::{
+    Angle, Bench, ConverterEnds, Gravity, Output, Quantizer, STANDARD_GRAVITY_M_S2, Sensor,
 };
-use tumble_core::{Angle, STANDARD_GRAVITY_M_S2};
 
 /// One-sided density in µg/√Hz as the coefficient N.
 pub fn density(ug_rthz: f64) -> f64 {
     ug_rthz * 1e-6 * STANDARD_GRAVITY_M_S2 / 2f64.sqrt()
+}
+
+/// The budget of a bench whose errors are all stated.
+pub fn stated(systematics: Systematics) -> Inputs {
+    let sensor =
+        Sensor { model: String::new(), serial: String::new(), axis: String::new(), kind: None };
+    let output = Output {
+        quantizer: Quantizer::None,
+        unit: "m/s2".into(),
+        nominal_scale_m_s2_per_lsb: None,
+        rate_hz: None,
+        ends: ConverterEnds::default(),
+    };
+    let bench = Bench {
+        gravity: Gravity::normal(50.0, 150.0),
+        angle_uncertainty: None,
+        range: None,
+        vertical_lean: Angle::from_rad(0.0),
+        systematics,
+    };
+    Inputs::before_any_run(&sensor, &output, &bench, Angle::from_deg(65.0), 1.0)
 }
 
 fn base(range_deg: f64, hours: f64) -> PlanProblem {
@@ -41,10 +63,7 @@ pub fn ten() -> Vec<(&'static str, PlanProblem)> {
             "up and down, lean of 20′",
             PlanProblem {
                 upright: Possible::Yes,
-                systematics: PlanSystematics {
-                    upright_lean: arcmin(20.0),
-                    ..PlanSystematics::NONE
-                },
+                upright_lean: arcmin(20.0),
                 ..paper
             },
         ),
@@ -61,7 +80,7 @@ pub fn ten() -> Vec<(&'static str, PlanProblem)> {
             "random walk, bias wanted",
             PlanProblem {
                 noise: PlanNoise { walk_m_s2_rts: 2e-4, ..noise(50.0) },
-                targets: [Some(0.002), None, None, None, None, None],
+                targets: [Some(0.002), None, None, None, None, None, None],
                 ..base(60.0, 2.0)
             },
         ),
@@ -77,7 +96,7 @@ pub fn ten() -> Vec<(&'static str, PlanProblem)> {
             "K2 wanted, ±90°, five runs",
             PlanProblem {
                 further_terms: vec![Term::K2],
-                targets: [Some(0.01), None, Some(1e-3), Some(3e-4), None, None],
+                targets: [Some(0.01), None, Some(1e-3), Some(3e-4), None, None, None],
                 runs: Some(5),
                 turn_on_m_s2: Some(0.003),
                 ..base(90.0, 4.0)
@@ -87,14 +106,14 @@ pub fn ten() -> Vec<(&'static str, PlanProblem)> {
             "systematic table, turned by 180°, D",
             PlanProblem {
                 criterion: Criterion::D,
-                systematics: PlanSystematics {
-                    dial_scale: 3e-4,
-                    eccentricity: arcmin(1.0),
-                    dial_zero: arcmin(2.0),
-                    axis_tilt: arcmin(15.0),
-                    sensor_lean: arcmin(20.0),
-                    ..PlanSystematics::NONE
-                },
+                systematics: stated(Systematics {
+                    dial_scale: Some(3e-4),
+                    eccentricity: Some(arcmin(1.0)),
+                    dial_zero: Some(arcmin(2.0)),
+                    axis_tilt: Some(arcmin(15.0)),
+                    sensor_lean: Some(arcmin(20.0)),
+                    ..Systematics::NONE
+                }),
                 remounting: Possible::Yes,
                 ..base(65.0, 1.5)
             },

@@ -2,9 +2,9 @@
 
 use tumble_core::estimate::predict;
 use tumble_core::plan::{
-    Lever, Plan, PlanError, PlanProblem, PlanSystematics, Possible, Prediction, Site, Term, plan,
-    predict_plan,
+    Lever, Plan, PlanError, PlanProblem, Possible, Prediction, Site, Term, plan, predict_plan,
 };
+use tumble_core::systematic::Systematics;
 use tumble_core::{Angle, Seat};
 
 use crate::benches;
@@ -166,10 +166,7 @@ fn the_papers_plan_in_the_same_time() {
     let without = factor(&plan(&problem).unwrap());
     let upright = PlanProblem {
         upright: Possible::Yes,
-        systematics: PlanSystematics {
-            upright_lean: Angle::from_arcmin(10.0),
-            ..PlanSystematics::NONE
-        },
+        upright_lean: Angle::from_arcmin(10.0),
         ..problem.clone()
     };
     let with = factor(&plan(&upright).unwrap());
@@ -197,7 +194,10 @@ fn targets_set_the_time_and_are_refused_where_no_time_helps() {
     assert!(!short.met && short.needed_s.is_some_and(|t| t > short.total_s));
     // 3′ of eccentricity: 4 mm/s², whatever the time.
     problem.total_s = None;
-    problem.systematics.eccentricity = Angle::from_arcmin(3.0);
+    problem.systematics = benches::stated(Systematics {
+        eccentricity: Some(Angle::from_arcmin(3.0)),
+        ..Systematics::NONE
+    });
     let never = plan(&problem).unwrap();
     assert!(!never.met && never.needed_s.is_none());
     let with =

@@ -5,6 +5,7 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 use tumble_core::linalg::{Matrix, Triangular};
 use tumble_core::plan::{Plan, PlanProblem, Possible, Site, Term, plan};
+use tumble_core::systematic::{Quantity, Shape};
 
 use crate::benches;
 
@@ -32,7 +33,7 @@ fn solver(problem: &PlanProblem, plan: &Plan) -> Matrix {
     let g = problem.gravity.value_m_s2;
     let k2 = problem.terms().contains(&Term::K2);
     let p = if k2 { 4 } else { 3 };
-    let lean = problem.systematics.upright_lean.rad();
+    let lean = problem.upright_lean.rad();
     let rows: Vec<(Vec<f64>, f64)> = plan
         .sites
         .iter()
@@ -81,17 +82,24 @@ struct Common {
 }
 
 fn common(problem: &PlanProblem, n: &mut Normal) -> Common {
-    let s = &problem.systematics;
-    let each = s.eccentricity.rad() / 2f64.sqrt();
-    let lean = s.upright_lean.rad();
+    let line = |q| problem.systematics.of_quantity(q);
+    let u = |q| line(q).map_or(0.0, |l| l.standard_uncertainty);
+    let (tilt, sensor) = match line(Quantity::TiltTimesLean).map(|l| l.shape) {
+        Some(Shape::Product { u_rad: [tilt, sensor] }) => (tilt, sensor),
+        _ => (0.0, 0.0),
+    };
+    let lean = problem.upright_lean.rad();
     Common {
         gravity_m_s2: problem.gravity.value_m_s2
             + n.next(problem.gravity.standard_uncertainty_m_s2),
-        dial_scale: n.next(s.dial_scale),
-        eccentricity: [n.next(each), n.next(each)],
-        zero: n.next(s.dial_zero.rad()),
-        tilt: n.next(s.axis_tilt.rad()),
-        lean: n.next(s.sensor_lean.rad()),
+        dial_scale: n.next(u(Quantity::DialScale)),
+        eccentricity: [
+            n.next(u(Quantity::EccentricitySine)),
+            n.next(u(Quantity::EccentricityCosine)),
+        ],
+        zero: n.next(u(Quantity::DialZero)),
+        tilt: n.next(tilt),
+        lean: n.next(sensor),
         upright: [n.next(lean), n.next(lean)],
     }
 }
@@ -110,7 +118,7 @@ fn run(problem: &PlanProblem, plan: &Plan, c: &Common, turned: bool, n: &mut Nor
                 let lean = c.upright[usize::from(s.sine() < 0.0)];
                 let read = c.gravity_m_s2 * s.sine() * lean.cos();
                 // Its expectation is corrected.
-                let u = problem.systematics.upright_lean.rad();
+                let u = problem.upright_lean.rad();
                 read + s.sine() * problem.gravity.value_m_s2 * u * u / 2.0
             } else {
                 let phi = s.angle.rad();

@@ -18,7 +18,7 @@ fn effect(plan_name: &str, q: Quantity) -> ([f64; 3], f64) {
     };
     let at = estimate(&refs, &setting(&b), &options).unwrap();
     let sites = Sites::of(&at, &refs, &setting(&b), 1.0).unwrap();
-    let lsb = pattern(q, &sites, &setting(&b)).unwrap();
+    let lsb = pattern(q, &sites).unwrap();
     let linearized = Linearized::new(&at, &[]).unwrap();
     let left = linearized.left_over(&lsb);
     let rms = (left.iter().map(|r| r * r).sum::<f64>() / left.len() as f64).sqrt();

@@ -110,7 +110,7 @@ impl Comparison {
                 let predicted = find(&all, q).sensitivity.map(|c| c * x);
                 let both = [up, down].map(|e| self.fit(&with(e), &bench).full().unwrap());
                 let observed = core::array::from_fn(|i| 0.5 * (both[0][i] - both[1][i]));
-                let left = linearized.left_over(&pattern(q, &sites, &setting(&bench)).unwrap());
+                let left = linearized.left_over(&pattern(q, &sites).unwrap());
                 let squares =
                     left.iter().zip(&at.weighted_rows).map(|(l, r)| (l * x / r.sd_lsb).powi(2));
                 let residuals = (squares.sum::<f64>() / left.len() as f64).sqrt();
@@ -284,7 +284,7 @@ fn a_fitted_term_takes_its_own_place() {
     let refs: Vec<&Position> = positions.iter().collect();
     let at = fit(&positions, &b, Method::Exact);
     let sites = Sites::of(&at, &refs, &setting(&b), 1.0).unwrap();
-    let lsb = pattern(Quantity::Quadratic, &sites, &setting(&b)).unwrap();
+    let lsb = pattern(Quantity::Quadratic, &sites).unwrap();
     let columns = [ExtraColumn { lsb: lsb.clone(), replaces: Some(Quantity::Quadratic) }];
     let with = effects(&at, &refs, &setting(&b), &inputs, &columns).unwrap();
     assert!(with.iter().all(|e| e.quantity != Quantity::Quadratic));
