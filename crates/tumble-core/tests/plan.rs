@@ -4,6 +4,8 @@
 
 #[path = "plan/benches.rs"]
 mod benches;
+#[path = "plan/certified.rs"]
+mod certified;
 #[path = "plan/quality.rs"]
 mod quality;
 #[path = "plan/simulated.rs"]

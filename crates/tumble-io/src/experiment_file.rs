@@ -66,7 +66,7 @@ pub(crate) struct OutputTable {
     pub(crate) resolution: Option<f64>,
 }
 
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct BenchTable {
     pub(crate) gravity: Option<f64>,

@@ -299,12 +299,14 @@ before anyone turns the table. With --hours it makes the most of the time; with
 targets cannot be met, and the output says with what they could.
 
 Targets: bias=0.5mm/s2 misalignment=0.5mrad scale=200ppm k2=50ug/g2
-k3=1e-5 temperature=0.1mm/s2 (per kelvin). One and more; only those count then.
+k3=1e-5 temp-bias=0.1mm/s2 temp-scale=50ppm (per kelvin). One and more; only
+those count then.
 
 Examples:
   tumble plan --sensor ADXL203 --range 65 --hours 1
   tumble plan --range 65 --scatter 1arcmin --updown --target bias=0.5mm/s2
   tumble plan bench.toml --hours 2 --out plan
+  tumble plan --noise-file still/noise.json --range 65 --hours 2
   tumble plan my-sensor --terms k2 --json | jq .predicted"
 )]
 pub(crate) struct PlanArgs {
@@ -332,6 +334,9 @@ pub(crate) struct PlanArgs {
     /// Noise: one-sided density (110ug/rtHz), or of a sample (1.2LSB).
     #[arg(long, value_name = "NOISE", value_parser = quantity::noise)]
     pub(crate) noise: Option<NoiseArg>,
+    /// Noise as `tumble noise RECORD --json` found it, in a file.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) noise_file: Option<PathBuf>,
     /// Bias instability, the B of the Allan variance.
     #[arg(long, value_name = "A", value_parser = quantity::acceleration)]
     pub(crate) bias_instability: Option<AccelerationArg>,
@@ -359,10 +364,10 @@ pub(crate) struct PlanArgs {
     /// The body can be turned by 180° on the platform between runs.
     #[arg(long)]
     pub(crate) remounting: bool,
-    /// Fitted beside bias, misalignment and scale error: k2, k3, temperature.
+    /// Fitted beside bias, misalignment, scale: k2, k3, temp-bias, temp-scale.
     #[arg(long, value_name = "TERMS", value_delimiter = ',')]
     pub(crate) terms: Vec<String>,
-    /// Rise of the temperature during a run, K, for the term temperature.
+    /// Rise of the temperature during a run, K.
     #[arg(long, value_name = "K")]
     pub(crate) temperature_rise: Option<f64>,
     /// Number of runs [default: 3 to 6, chosen].

@@ -178,7 +178,7 @@ pub(crate) fn target(text: &str) -> Result<Target, String> {
             Target::Acceleration(term, acceleration(size)?)
         }
         term @ Term::Misalignment => Target::Plain(term, angle(size)?.rad()),
-        term @ Term::ScaleError => Target::Plain(term, ratio(size)?),
+        term @ (Term::ScaleError | Term::ScalePerKelvin) => Target::Plain(term, ratio(size)?),
         term @ Term::K2 => Target::Plain(term, k2(size)?),
         term @ Term::K3 => {
             let v = size.trim().parse().map_err(|_| "give K3 in 1/(m/s2)2, for instance 1e-6")?;

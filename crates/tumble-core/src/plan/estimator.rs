@@ -98,7 +98,7 @@ impl Estimator {
         let mut row = [0.0; MOST];
         let (g, sd) = (rows.problem.gravity.value_m_s2, rows.variance(site).sqrt());
         for (x, term) in row.iter_mut().zip(terms) {
-            let column = term.column(site, g, time * rows.problem.temperature_rise_k);
+            let column = term.column(site, g, time * rows.problem.systematics.temperature_spread_k);
             *x = column * rows.problem.unit(*term) / sd;
         }
         row

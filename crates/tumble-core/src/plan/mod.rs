@@ -329,7 +329,7 @@ fn check(p: &PlanProblem) -> Result<(), PlanError> {
     if p.total_s.is_some_and(|t| t > LONGEST_TOTAL_S) {
         return wrong("time", p.total_s.unwrap_or(0.0), "at most a week, in s");
     }
-    if p.terms().iter().any(|t| t.needs_temperature()) && p.temperature_rise_k <= 0.0 {
+    if p.terms().iter().any(|t| t.needs_temperature()) && p.systematics.temperature_spread_k <= 0.0 {
         return wrong(
             "rise of temperature",
             0.0,
@@ -370,7 +370,7 @@ fn check_sizes(p: &PlanProblem) -> Result<(), PlanError> {
         ("time to settle", p.times.settle_s),
         ("time to stand upright", p.times.upright_s),
         ("time to restart", p.times.restart_s),
-        ("rise of temperature", p.temperature_rise_k),
+        ("rise of temperature", p.systematics.temperature_spread_k),
     ];
     if let Some((name, value)) = not_negative.iter().find(|(_, v)| !(v.is_finite() && *v >= 0.0)) {
         return wrong(name, *value, "a finite number, zero or more");

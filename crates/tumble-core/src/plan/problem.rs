@@ -229,7 +229,8 @@ pub struct PlanProblem {
     pub converter: Option<PlanConverter>,
     /// Standard deviation of the bias between power-ups, m/s²; `None`: not known.
     pub turn_on_m_s2: Option<f64>,
-    /// What no repetition averages out, as the budget knows it.
+    /// What no repetition averages out, as the budget knows it. Its [`Inputs::temperature_spread_k`] is the even rise of a
+    /// run that terms of temperature are fitted to.
     pub systematics: Inputs,
     /// Lean of upright dwells, standard.
     pub upright_lean: Angle,
@@ -243,9 +244,6 @@ pub struct PlanProblem {
     pub remounting: Possible,
     /// Fitted beside bias, misalignment and scale error.
     pub further_terms: Vec<Term>,
-    /// Rise of the temperature during a run, K: terms that depend on it are fitted to it; it is even, whatever the budget's
-    /// [`Inputs::temperature_spread_k`] allows for where they are not.
-    pub temperature_rise_k: f64,
     /// Largest expanded uncertainties that still serve, by [`Term::index`]; `None`: this term is not wanted, it is only
     /// fitted. All `None`: the defaults of [`Targets`] for the first three.
     pub targets: [Option<f64>; TERMS],
@@ -282,7 +280,6 @@ impl PlanProblem {
             upright: Possible::No,
             remounting: Possible::No,
             further_terms: Vec::new(),
-            temperature_rise_k: 0.0,
             targets: [None; TERMS],
             criterion: Criterion::Minimax,
             runs: None,

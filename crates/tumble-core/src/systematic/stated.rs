@@ -47,4 +47,22 @@ impl Systematics {
         k2_per_m_s2: Some(0.0),
         k3_per_m2_s4: Some(0.0),
     };
+
+    /// These, and where they state nothing, the others.
+    #[must_use]
+    pub fn or(self, under: Self) -> Self {
+        Self {
+            dial_scale: self.dial_scale.or(under.dial_scale),
+            eccentricity: self.eccentricity.or(under.eccentricity),
+            dial_zero: self.dial_zero.or(under.dial_zero),
+            axis_tilt: self.axis_tilt.or(under.axis_tilt),
+            sensor_lean: self.sensor_lean.or(under.sensor_lean),
+            nonlinearity_lsb: self.nonlinearity_lsb.or(under.nonlinearity_lsb),
+            reference: self.reference.or(under.reference),
+            resolution: self.resolution.or(under.resolution),
+            temperature_spread_k: self.temperature_spread_k.or(under.temperature_spread_k),
+            k2_per_m_s2: self.k2_per_m_s2.or(under.k2_per_m_s2),
+            k3_per_m2_s4: self.k3_per_m2_s4.or(under.k3_per_m2_s4),
+        }
+    }
 }

@@ -241,7 +241,7 @@ fn temperature_and_sub_lsb_phases_are_planned_for() {
     use tumble_core::plan::PlanConverter;
     let mut problem = PlanProblem::with_range(Angle::from_deg(65.0));
     problem.further_terms = vec![Term::BiasPerKelvin];
-    problem.temperature_rise_k = 3.0;
+    problem.systematics.temperature_spread_k = 3.0;
     problem.total_s = Some(5400.0);
     let p = plan(&problem).unwrap();
     let with = p.prediction.of(Term::BiasPerKelvin).unwrap().u;

@@ -5,7 +5,7 @@ use tumble_core::{Angle, STANDARD_GRAVITY_M_S2};
 
 use super::settings::value;
 use crate::error::ReadError;
-use crate::experiment_file::{ExperimentFile, QuantizerName};
+use crate::experiment_file::{BenchTable, ExperimentFile, QuantizerName, SensorTable};
 
 /// Parts per million, and micro-g, as ratios.
 const MILLIONTH: f64 = 1e-6;
@@ -35,9 +35,32 @@ fn up_to(
     }
 }
 
+/// The keys of `[output]` that the budget reads and a bench without a unit may state, too.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct ConverterKeys {
+    pub(crate) nonlinearity_lsb: Option<f64>,
+    pub(crate) reference_uncertainty_ppm: Option<f64>,
+}
+
 /// The keys of `[bench]`, `[output]` and `[sensor]` that the budget reads.
 pub(super) fn systematics(file: &ExperimentFile) -> Result<Systematics, ReadError> {
-    let (bench, output, sensor) = (&file.bench, &file.output, &file.sensor);
+    let output = &file.output;
+    let converter = ConverterKeys {
+        nonlinearity_lsb: output.nonlinearity_lsb,
+        reference_uncertainty_ppm: output.reference_uncertainty_ppm,
+    };
+    Ok(Systematics {
+        resolution: resolution(output.quantizer, output.resolution)?,
+        ..systematics_of_tables(&file.bench, Some(&file.sensor), converter)?
+    })
+}
+
+/// The same of tables that need not be whole; the resolution of the readings is left open.
+pub(crate) fn systematics_of_tables(
+    bench: &BenchTable,
+    sensor: Option<&SensorTable>,
+    output: ConverterKeys,
+) -> Result<Systematics, ReadError> {
     let ppm = |key: &str, given: Option<f64>| {
         let v = up_to(key, given, MOST_PPM, "a standard uncertainty in ppm")?;
         Ok::<_, ReadError>(v.map(|v| v * MILLIONTH))
@@ -72,7 +95,7 @@ pub(super) fn systematics(file: &ExperimentFile) -> Result<Systematics, ReadErro
             "the largest deviation from a straight line in LSB",
         )?,
         reference: ppm("[output] reference_uncertainty_ppm", output.reference_uncertainty_ppm)?,
-        resolution: resolution(output.quantizer, output.resolution)?,
+        resolution: None,
         temperature_spread_k: up_to(
             "[bench] temperature_spread_k",
             bench.temperature_spread_k,
@@ -81,13 +104,13 @@ pub(super) fn systematics(file: &ExperimentFile) -> Result<Systematics, ReadErro
         )?,
         k2_per_m_s2: micro_g(
             "[sensor] k2_uncertainty_ug_per_g2",
-            sensor.k2_uncertainty_ug_per_g2,
+            sensor.and_then(|s| s.k2_uncertainty_ug_per_g2),
             g,
             "a standard uncertainty in µg/g²",
         )?,
         k3_per_m2_s4: micro_g(
             "[sensor] k3_uncertainty_ug_per_g3",
-            sensor.k3_uncertainty_ug_per_g3,
+            sensor.and_then(|s| s.k3_uncertainty_ug_per_g3),
             g * g,
             "a standard uncertainty in µg/g³",
         )?,

@@ -171,9 +171,7 @@ fn unit(term: Term) -> &'static str {
         Term::Bias => "m/s2",
         Term::Misalignment => "rad",
         Term::ScaleError => "1",
-        Term::K2 => "1/(m/s2)",
-        Term::K3 => "1/(m/s2)2",
-        Term::BiasPerKelvin => "m/s2/K",
+        _ => term.further().map_or("", tumble_core::estimate::Term::unit),
     }
 }
 

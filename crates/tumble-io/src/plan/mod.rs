@@ -1,5 +1,6 @@
 //! Plans as files: what is asked for (`bench.toml`), what was planned (`plan.toml`, JSON).
 
+mod assumed;
 mod document;
 mod plan_file;
 mod request;

@@ -1,6 +1,10 @@
 //! What is stated for a plan: by a file, by flags, or by both.
 
 use serde::Deserialize;
+use tumble_core::plan::TERMS;
+use tumble_core::systematic::Systematics;
+
+use crate::noise::KnownNoise;
 
 /// Everything that a plan can be told; `None`: not stated here. The first part stands in `[plan]` of a `bench.toml`.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
@@ -16,10 +20,8 @@ pub struct PlanSettings {
     pub spares: Option<usize>,
     /// `minimax`, `A` or `D`.
     pub criterion: Option<String>,
-    /// Fitted beside bias, misalignment, scale error: `k2`, `k3`, `temperature`.
+    /// Fitted beside bias, misalignment, scale error: `k2`, `k3`, `temp-bias`, `temp-scale`.
     pub terms: Option<Vec<String>>,
-    /// Rise of the temperature during a run, K.
-    pub temperature_rise_k: Option<f64>,
     /// Step of the dial, degrees.
     pub step_deg: Option<f64>,
     /// Time to turn the table to an angle, s.
@@ -46,24 +48,19 @@ pub struct PlanSettings {
     pub level_scatter_m_s2: Option<f64>,
     /// Standard deviation of the bias between power-ups, m/s².
     pub turn_on_m_s2: Option<f64>,
-    /// Scale of the dial, standard, ppm.
-    pub dial_scale_uncertainty_ppm: Option<f64>,
-    /// Eccentricity of the dial, amplitude.
-    pub eccentricity_arcmin: Option<f64>,
-    /// Zero of dial and level, standard.
-    pub angle_zero_uncertainty_arcmin: Option<f64>,
-    /// Tilt of the table's axis, standard.
-    pub axis_tilt_arcmin: Option<f64>,
-    /// Lean of the sensor, standard.
-    pub sensor_lean_arcmin: Option<f64>,
-    /// K2 where it is not fitted, standard, 1/(m/s²).
-    pub k2_per_m_s2: Option<f64>,
-    /// K3 where it is not fitted, standard, 1/(m/s²)².
-    pub k3_per_m2_s4: Option<f64>,
 
+    /// Errors that no scatter shows: of `[bench]`, `[sensor]` and `[output]` as everywhere, or of flags.
+    #[serde(skip)]
+    pub systematics: Systematics,
     /// Model of the sensor, for the catalogue.
     #[serde(skip)]
     pub sensor: Option<String>,
+    /// Sensitive axis, free text.
+    #[serde(skip)]
+    pub axis: Option<String>,
+    /// Noise as `tumble noise` found it; the figures of [`Self::noise_ug_rthz`] and the like go before.
+    #[serde(skip)]
+    pub known_noise: Option<KnownNoise>,
     /// Lowest and highest angle of the table, degrees.
     #[serde(skip)]
     pub range_deg: Option<[f64; 2]>,
@@ -87,7 +84,7 @@ pub struct PlanSettings {
     pub white_m_s2_rts: Option<f64>,
     /// Targets for expanded uncertainties, in the order of [`tumble_core::plan::Term::ALL`].
     #[serde(skip)]
-    pub targets: [Option<f64>; 6],
+    pub targets: [Option<f64>; TERMS],
     /// Level of confidence.
     #[serde(skip)]
     pub level: Option<f64>,
@@ -103,14 +100,14 @@ impl PlanSettings {
                     $($field: self.$field.or(under.$field),)*
                     // One target given anew: the others are not wanted any more.
                     targets: if self.targets.iter().any(Option::is_some) { self.targets } else { under.targets },
+                    systematics: self.systematics.or(under.systematics),
                 }
             };
         }
         each!(
-            hours runs dwell_s spares criterion terms temperature_rise_k step_deg setting_s settle_s upright_s restart_s
+            hours runs dwell_s spares criterion terms step_deg setting_s settle_s upright_s restart_s
             updown remounting noise_ug_rthz bias_instability_ug random_walk_m_s2_rts drift_m_s2_h level_scatter_m_s2
-            turn_on_m_s2 dial_scale_uncertainty_ppm eccentricity_arcmin angle_zero_uncertainty_arcmin axis_tilt_arcmin sensor_lean_arcmin k2_per_m_s2
-            k3_per_m2_s4 sensor range_deg scatter_arcmin gravity_m_s2 updown_lean_arcmin lsb_m_s2 rate_hz white_m_s2_rts
+            turn_on_m_s2 sensor axis known_noise range_deg scatter_arcmin gravity_m_s2 updown_lean_arcmin lsb_m_s2 rate_hz white_m_s2_rts
             level
         )
     }

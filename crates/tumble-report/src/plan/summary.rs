@@ -30,9 +30,9 @@ pub fn plan_summary(d: &PlanDocument) -> String {
     out.push('\n');
     limits(&mut out, d);
     quality(&mut out, d);
-    if !d.assumed.is_empty() {
-        let list: Vec<String> = d.assumed.iter().map(|a| clean_text(a)).collect();
-        row(&mut out, "assumed", &format!("{}.", list.join("; ")));
+    let heads = core::iter::once("assumed").chain(core::iter::repeat(""));
+    for (head, sentence) in heads.zip(&d.assumed) {
+        row(&mut out, head, &clean_text(sentence));
     }
     out
 }

@@ -1,8 +1,12 @@
 //! `tumble plan`
 
 use tumble_core::plan::plan;
+use tumble_core::plan::TERMS;
+use tumble_core::systematic::Systematics;
+use tumble_io::noise::read_document as read_noise_document;
 use tumble_io::{
-    Catalogue, Existing, OutputFolder, PlanDocument, PlanSettings, Written, plan_request, plan_toml,
+    Catalogue, Existing, OutputFolder, PlanDocument, PlanRequest, PlanSettings, ReadError, Written,
+    plan_request, plan_toml,
 };
 
 use crate::cli::PlanArgs;
@@ -18,9 +22,7 @@ pub(crate) fn run(args: &PlanArgs) -> Exit {
             return Exit::Usage;
         }
     };
-    let catalogue = args.catalogue.as_deref().map(Catalogue::read).transpose();
-    let request =
-        catalogue.and_then(|user| plan_request(args.bench.as_deref(), settings, user.as_ref()));
+    let request = request(args, settings);
     let request = match request {
         Ok(request) => request,
         Err(e) => {
@@ -42,6 +44,17 @@ pub(crate) fn run(args: &PlanArgs) -> Exit {
     // Defaults are a yardstick; a target that somebody asked for is a question with an answer.
     let answer = if document.met || !document.targets_stated { Exit::Ok } else { Exit::Rejected };
     answer.worse(write(args, &document))
+}
+
+/// The question, whole: flags over the record's noise over the file over the catalogue.
+fn request(args: &PlanArgs, flags: PlanSettings) -> Result<PlanRequest, ReadError> {
+    let user = args.catalogue.as_deref().map(Catalogue::read).transpose()?;
+    let known_noise = match &args.noise_file {
+        Some(path) => Some(read_noise_document(path)?.known(&path.display().to_string())?),
+        None => None,
+    };
+    let settings = PlanSettings { known_noise, ..flags };
+    plan_request(args.bench.as_deref(), settings, user.as_ref())
 }
 
 fn write(args: &PlanArgs, document: &PlanDocument) -> Exit {
@@ -90,7 +103,7 @@ fn settings(a: &PlanArgs) -> Result<PlanSettings, String> {
         Some(n) => Some(n.m_s2(lsb.unwrap_or(1.0), rate_hz) / rate_hz.sqrt()),
     };
     let ug = 1e-6 * tumble_core::STANDARD_GRAVITY_M_S2;
-    let mut targets = [None; 6];
+    let mut targets = [None; TERMS];
     for t in &a.target {
         let (term, size) = match *t {
             Target::Acceleration(term, given) => {
@@ -107,7 +120,6 @@ fn settings(a: &PlanArgs) -> Result<PlanSettings, String> {
         spares: a.spares,
         criterion: a.criterion.clone(),
         terms: (!a.terms.is_empty()).then(|| a.terms.clone()),
-        temperature_rise_k: a.temperature_rise,
         step_deg: a.step.map(|s| s.deg()),
         setting_s: a.set_time,
         settle_s: a.settle,
@@ -121,13 +133,17 @@ fn settings(a: &PlanArgs) -> Result<PlanSettings, String> {
         random_walk_m_s2_rts: a.random_walk,
         drift_m_s2_h: m_s2(a.drift, "--drift")?,
         turn_on_m_s2: m_s2(a.turn_on, "--turn-on")?,
-        dial_scale_uncertainty_ppm: a.dial_scale.map(|e| e * 1e6),
-        eccentricity_arcmin: a.eccentricity.map(|e| e.arcmin()),
-        angle_zero_uncertainty_arcmin: a.dial_zero.map(|e| e.arcmin()),
-        axis_tilt_arcmin: a.tilt.map(|e| e.arcmin()),
-        sensor_lean_arcmin: a.tilt.map(|e| e.arcmin()),
-        k2_per_m_s2: a.k2,
-        k3_per_m2_s4: a.k3,
+        systematics: Systematics {
+            dial_scale: a.dial_scale,
+            eccentricity: a.eccentricity,
+            dial_zero: a.dial_zero,
+            axis_tilt: a.tilt,
+            sensor_lean: a.tilt,
+            temperature_spread_k: a.temperature_rise,
+            k2_per_m_s2: a.k2,
+            k3_per_m2_s4: a.k3,
+            ..Systematics::default()
+        },
         sensor: a.sensor.clone(),
         range_deg: a.range.clone().map(|r| r.0),
         scatter_arcmin: a.scatter.map(|s| s.arcmin()),
