@@ -145,9 +145,7 @@ fn with(problem: &PlanProblem, plan: &Layout, total_s: f64, lever: Lever) -> Opt
 
 /// Halves what two sources come from.
 fn halve(inputs: &mut Inputs, one: Source, two: Source) {
-    let of_them = |l: &&mut Input| {
-        Source::of(l.quantity).is_some_and(|s| s == one || s == two)
-    };
+    let of_them = |l: &&mut Input| Source::of(l.quantity).is_some_and(|s| s == one || s == two);
     inputs.lines.iter_mut().filter(of_them).for_each(|l| *l = l.scaled(0.5));
 }
 

@@ -26,8 +26,8 @@ pub use order::OrderEffect;
 pub use phases::DITHERED_LSB;
 pub use predict::{Prediction, Source, TermPrediction, predict_plan};
 pub use problem::{
-    Criterion, DEFAULT_SPARES, PlanConverter, PlanNoise, PlanProblem, PlanTimes, Possible,
-    Site, TERMS, Term,
+    Criterion, DEFAULT_SPARES, PlanConverter, PlanNoise, PlanProblem, PlanTimes, Possible, Site,
+    TERMS, Term,
 };
 
 use crate::systematic::Input;
@@ -329,7 +329,8 @@ fn check(p: &PlanProblem) -> Result<(), PlanError> {
     if p.total_s.is_some_and(|t| t > LONGEST_TOTAL_S) {
         return wrong("time", p.total_s.unwrap_or(0.0), "at most a week, in s");
     }
-    if p.terms().iter().any(|t| t.needs_temperature()) && p.systematics.temperature_spread_k <= 0.0 {
+    if p.terms().iter().any(|t| t.needs_temperature()) && p.systematics.temperature_spread_k <= 0.0
+    {
         return wrong(
             "rise of temperature",
             0.0,
@@ -375,7 +376,8 @@ fn check_sizes(p: &PlanProblem) -> Result<(), PlanError> {
     if let Some((name, value)) = not_negative.iter().find(|(_, v)| !(v.is_finite() && *v >= 0.0)) {
         return wrong(name, *value, "a finite number, zero or more");
     }
-    let uncertain = |l: &&Input| !(l.standard_uncertainty.is_finite() && l.standard_uncertainty >= 0.0);
+    let uncertain =
+        |l: &&Input| !(l.standard_uncertainty.is_finite() && l.standard_uncertainty >= 0.0);
     if let Some(l) = p.systematics.lines.iter().find(uncertain) {
         return wrong(l.quantity.name(), l.standard_uncertainty, "a finite number, zero or more");
     }

@@ -24,12 +24,16 @@ pub(super) fn systematic(
     let lines = &problem.systematics.lines;
     let patterns = Patterns::of(problem, sites, runs, timeline);
     let mut out = Vec::new();
-    for line in lines.iter().filter(|l| l.standard_uncertainty > 0.0 && !fitted.contains(&l.quantity)) {
-        let Some((source, shape)) = Source::of(line.quantity).zip(patterns.of_quantity(line.quantity))
+    for line in
+        lines.iter().filter(|l| l.standard_uncertainty > 0.0 && !fitted.contains(&l.quantity))
+    {
+        let Some((source, shape)) =
+            Source::of(line.quantity).zip(patterns.of_quantity(line.quantity))
         else {
             continue;
         };
-        let u = shown_by_data(rows, sites, runs, timeline, line).unwrap_or(line.standard_uncertainty);
+        let u =
+            shown_by_data(rows, sites, runs, timeline, line).unwrap_or(line.standard_uncertainty);
         out.push((source, shape.iter().map(|f| u * f).collect()));
     }
     let g = problem.gravity.standard_uncertainty_m_s2;
@@ -86,9 +90,7 @@ impl Patterns {
             _ => {}
         }
         let [one, other] = [0, 1].map(|i| pattern(quantity, &self.sites[i]));
-        let mean = |(a, b): (f64, f64)| {
-            self.scale_m_s2 * (self.shares[0] * a + self.shares[1] * b)
-        };
+        let mean = |(a, b): (f64, f64)| self.scale_m_s2 * (self.shares[0] * a + self.shares[1] * b);
         Some(one?.into_iter().zip(other?).map(mean).collect())
     }
 }

@@ -2,9 +2,7 @@
 
 use super::quantity::{Quantity, Shape};
 use super::{Systematics, catalogued};
-use crate::{
-    ARCMIN_RAD, Angle, Bench, Experiment, GravitySource, Output, Quantizer, Seat, Sensor,
-};
+use crate::{ARCMIN_RAD, Angle, Bench, Experiment, GravitySource, Output, Quantizer, Seat, Sensor};
 
 /// Limits of what a dial is as accurate as, where no setting error is stated: the table of the paper is set by hand "to a few
 /// arcminutes" (method section 1). A rectangle of that half width: 1/√3 of it is the standard uncertainty.

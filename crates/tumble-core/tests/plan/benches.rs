@@ -61,11 +61,7 @@ pub fn ten() -> Vec<(&'static str, PlanProblem)> {
         ),
         (
             "up and down, lean of 20′",
-            PlanProblem {
-                upright: Possible::Yes,
-                upright_lean: arcmin(20.0),
-                ..paper
-            },
+            PlanProblem { upright: Possible::Yes, upright_lean: arcmin(20.0), ..paper },
         ),
         (
             "dividing head ±90°, 0.1′, quiet sensor",

@@ -24,9 +24,9 @@ use crate::experiment_file::{
 };
 use crate::source::{DOCUMENT_LIMIT, Watch, read_document};
 pub(crate) use settings::bench as bench_of_table;
-pub(crate) use systematics::{ConverterKeys, systematics_of_tables};
 use settings::{bench, dialect, discard, mapping, missing, output, targets, value};
 use systematics::systematics;
+pub(crate) use systematics::{ConverterKeys, systematics_of_tables};
 
 /// Name of the file that makes a folder an experiment.
 pub(crate) const EXPERIMENT_FILE: &str = "experiment.toml";

@@ -174,15 +174,8 @@ fn noise(
             .map(|b| b * ug)
             .or(known.map(|k| k.flicker_m_s2))
             .unwrap_or(0.0),
-        walk_m_s2_rts: s
-            .random_walk_m_s2_rts
-            .or(known.map(|k| k.walk_m_s2_per_rts))
-            .unwrap_or(0.0),
-        ramp_m_s3: s
-            .drift_m_s2_h
-            .map(|d| d / 3600.0)
-            .or(known.map(|k| k.ramp_m_s3))
-            .unwrap_or(0.0),
+        walk_m_s2_rts: s.random_walk_m_s2_rts.or(known.map(|k| k.walk_m_s2_per_rts)).unwrap_or(0.0),
+        ramp_m_s3: s.drift_m_s2_h.map(|d| d / 3600.0).or(known.map(|k| k.ramp_m_s3)).unwrap_or(0.0),
     }
 }
 
@@ -225,9 +218,8 @@ fn converter(
         return None;
     };
     let rate_hz = s.rate_hz.or(known.map(|k| k.rate_hz));
-    let rate_hz = assumed.or(rate_hz, ASSUMED_RATE_HZ, || {
-        format!("{ASSUMED_RATE_HZ} samples per second (--rate)")
-    });
+    let rate_hz = assumed
+        .or(rate_hz, ASSUMED_RATE_HZ, || format!("{ASSUMED_RATE_HZ} samples per second (--rate)"));
     Some(PlanConverter { lsb_m_s2, rate_hz })
 }
 
@@ -276,8 +268,7 @@ fn systematics(
     };
     let first = || entry?.modes.first()?.nominal_scale_m_s2_per_lsb();
     let k0 = s.lsb_m_s2.or_else(first).unwrap_or(1.0);
-    let inputs =
-        Inputs::before_any_run(&sensor, &output, &bench, Angle::from_rad(0.0), k0);
+    let inputs = Inputs::before_any_run(&sensor, &output, &bench, Angle::from_rad(0.0), k0);
     let is_fitted = |q| fitted.iter().any(|t| t.replaces() == Some(q));
     for (quantity, name, flag, is_stated) in STATING {
         let Some(line) = inputs.of_quantity(quantity) else { continue };
@@ -286,7 +277,8 @@ fn systematics(
             assumed.0.push(format!("{name}: {why} ({flag})"));
         }
     }
-    if fitted.iter().any(|t| t.needs_temperature()) && s.systematics.temperature_spread_k.is_none() {
+    if fitted.iter().any(|t| t.needs_temperature()) && s.systematics.temperature_spread_k.is_none()
+    {
         let k = inputs.temperature_spread_k;
         assumed.0.push(format!("a rise of {k} K during a run (--temperature-rise)"));
     }

@@ -6,8 +6,8 @@ use serde::Deserialize;
 use tumble_core::plan::PlanProblem;
 use tumble_core::{Angle, Gravity};
 
-use super::assumed::{ASSUMED_GRAVITY_M_S2, resolve};
 use super::PlanSettings;
+use super::assumed::{ASSUMED_GRAVITY_M_S2, resolve};
 use crate::catalogue::{Catalogue, UserCatalogue};
 use crate::error::{Place, Problem, ReadError};
 use crate::experiment_file::{self, BenchTable, SensorTable, SpecTable};
@@ -150,7 +150,8 @@ fn settings_of(file: BenchFile) -> Result<(PlanSettings, Option<Gravity>), ReadE
     s.systematics = systematics_of_tables(&table, file.sensor.as_ref(), converter)?;
     let stated = table.gravity.is_some() || table.latitude_deg.is_some();
     let assumed = (!stated).then_some(ASSUMED_GRAVITY_M_S2);
-    let bench = bench_of_table(&BenchTable { gravity: table.gravity.or(assumed), ..table.clone() })?;
+    let bench =
+        bench_of_table(&BenchTable { gravity: table.gravity.or(assumed), ..table.clone() })?;
     s.range_deg = bench.range.map(|(lo, hi)| [lo.deg(), hi.deg()]);
     s.scatter_arcmin = bench.angle_uncertainty.map(Angle::arcmin);
     s.updown_lean_arcmin = table.updown_lean_arcmin;

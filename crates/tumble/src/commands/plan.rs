@@ -1,7 +1,7 @@
 //! `tumble plan`
 
-use tumble_core::plan::plan;
 use tumble_core::plan::TERMS;
+use tumble_core::plan::plan;
 use tumble_core::systematic::Systematics;
 use tumble_io::noise::read_document as read_noise_document;
 use tumble_io::{
