@@ -39,9 +39,9 @@ pub use folder::{ExperimentFolder, FileDigest, read_experiment, read_experiment_
 pub use init::{Assumed, InitDraft, InitFacts, draft_experiment, experiment_file};
 pub use output::{Existing, OutputError, OutputFolder, Written, write_file};
 pub use plan::{
-    PlanDocument, PlanFile, PlanRequest, PlanSettings, PlannedGain, PlannedOrder, PlannedPaper,
-    PlannedPosition, PlannedRuns, PlannedSource, PlannedTerm, plan_request, plan_toml,
-    read_plan_file,
+    PlanDocument, PlanFile, PlanRequest, PlanSettings, PlannedGain, PlannedLever, PlannedOrder,
+    PlannedPaper, PlannedPosition, PlannedRuns, PlannedSource, PlannedTerm, plan_request,
+    plan_toml, read_plan_file,
 };
 pub use simulation::{SimulationError, SimulationOptions, write_simulation};
 pub use source::{Watch, open_text};

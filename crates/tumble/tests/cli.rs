@@ -575,6 +575,14 @@ fn a_target_out_of_reach_is_a_no_with_what_would_do() {
     assert_eq!(code(&yes), 0, "{}", out(&yes));
     let json: serde_json::Value = serde_json::from_str(&out(&yes)).unwrap();
     assert_eq!((json["met"].as_bool(), json["updown"].as_bool()), (Some(true), Some(true)));
+    // Where no single change does, several together.
+    let usual = tumble(dir.path(), &["plan", "--range", "65", "--target", "bias=1mm/s2"]);
+    assert_eq!(code(&usual), 1);
+    assert!(
+        out(&usual).contains("together: ") && out(&usual).contains("K2 fitted"),
+        "{}",
+        out(&usual)
+    );
     for wrong in [["--target", "bias=1mrad"], ["--hours", "0.05"], ["--range", "120"]] {
         let refused = tumble(dir.path(), &[&["plan"], &wrong[..]].concat());
         assert_eq!(code(&refused), 2, "{wrong:?}: {}", out(&refused));

@@ -51,7 +51,7 @@ fn documented_commands_print_what_is_documented() {
             compared += 1;
         }
     }
-    assert_eq!(compared, 3);
+    assert_eq!(compared, 4);
 }
 
 #[test]

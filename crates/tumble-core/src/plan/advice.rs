@@ -30,13 +30,17 @@ pub enum Lever {
     Gravity,
     /// Turning the body by 180° between runs.
     Remounting,
+    /// Half the lean of upright dwells.
+    Lean,
     /// K2 fitted, not taken from the data sheet.
     FitK2,
+    /// The same of K3.
+    FitK3,
 }
 
 impl Lever {
     /// All, in the order of lists.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 13] = [
         Self::Minute,
         Self::TwiceTheTime,
         Self::TwoRuns,
@@ -47,7 +51,9 @@ impl Lever {
         Self::Dial,
         Self::Gravity,
         Self::Remounting,
+        Self::Lean,
         Self::FitK2,
+        Self::FitK3,
     ];
 
     /// Name in files.
@@ -64,7 +70,9 @@ impl Lever {
             Self::Dial => "dial",
             Self::Gravity => "gravity",
             Self::Remounting => "remounting",
+            Self::Lean => "lean",
             Self::FitK2 => "fit_k2",
+            Self::FitK3 => "fit_k3",
         }
     }
 
@@ -82,7 +90,9 @@ impl Lever {
             Self::Dial => "dial calibrated twice as well",
             Self::Gravity => "gravity measured to 1 mGal",
             Self::Remounting => "body turned 180 deg between runs",
+            Self::Lean => "upright dwells set twice as well",
             Self::FitK2 => "K2 fitted",
+            Self::FitK3 => "K3 fitted",
         }
     }
 }
@@ -108,39 +118,68 @@ pub(super) fn gains(problem: &PlanProblem, plan: &Layout, total_s: f64) -> Vec<G
 }
 
 fn with(problem: &PlanProblem, plan: &Layout, total_s: f64, lever: Lever) -> Option<Prediction> {
+    match lever {
+        Lever::Minute => Some(longer(problem, &plan.prediction, 1.0 + 60.0 / total_s)),
+        Lever::TwiceTheTime => {
+            search::best_of(problem, 2.0 * total_s, search::COMPARED).map(|l| l.prediction)
+        }
+        Lever::TwoRuns => predict_plan(problem, &plan.sites, plan.dwell_s, plan.runs + 2),
+        Lever::Upright | Lever::Range | Lever::FitK2 | Lever::FitK3 => {
+            again(&pulled(problem, lever)?, plan)
+        }
+        _ => predict_plan(&pulled(problem, lever)?, &plan.sites, plan.dwell_s, plan.runs),
+    }
+}
+
+/// The question with a lever pulled; `None` where that changes nothing, and for what is time and not the bench.
+fn pulled(problem: &PlanProblem, lever: Lever) -> Option<PlanProblem> {
     let mut other = problem.clone();
     let half = |a: Angle| Angle::from_rad(0.5 * a.rad());
+    let has_upright = problem.upright == Possible::Yes;
     match lever {
-        Lever::Minute => return Some(longer(problem, &plan.prediction, 1.0 + 60.0 / total_s)),
-        Lever::TwiceTheTime => {
-            return search::best_of(problem, 2.0 * total_s, search::COMPARED).map(|l| l.prediction);
-        }
-        Lever::TwoRuns => return predict_plan(problem, &plan.sites, plan.dwell_s, plan.runs + 2),
         Lever::Setting => other.setting_scatter = half(problem.setting_scatter),
         Lever::Level => halve(&mut other.systematics, Source::TiltAndLean, Source::DialZero),
         Lever::Dial => halve(&mut other.systematics, Source::DialScale, Source::Eccentricity),
+        Lever::Lean if has_upright => other.upright_lean = half(problem.upright_lean),
         Lever::Gravity if problem.gravity.standard_uncertainty_m_s2 > MEASURED_GRAVITY_M_S2 => {
             other.gravity.standard_uncertainty_m_s2 = MEASURED_GRAVITY_M_S2;
         }
-        Lever::Remounting if problem.remounting == Possible::No => other.remounting = Possible::Yes,
-        Lever::Upright if problem.upright == Possible::No => {
-            other.upright = Possible::Yes;
-            return again(&other, plan);
-        }
-        Lever::Range if problem.range.1.deg() < 90.0 && problem.upright == Possible::No => {
+        Lever::Remounting => other.remounting = Possible::Yes,
+        Lever::Upright => other.upright = Possible::Yes,
+        Lever::Range if problem.range.1.deg() < 90.0 && !has_upright => {
             other.range = (Angle::from_deg(-90.0), Angle::from_deg(90.0));
-            return again(&other, plan);
         }
         Lever::FitK2 if !problem.further_terms.contains(&Term::K2) => {
             other.further_terms.push(Term::K2);
-            return again(&other, plan);
         }
-        _ => return None,
+        Lever::FitK3 if !problem.further_terms.contains(&Term::K3) => {
+            other.further_terms.push(Term::K3);
+        }
+        _ => {}
     }
-    if other == *problem {
-        return None;
+    Some(other).filter(|o| o != problem)
+}
+
+/// Several levers that meet the targets together, in the order in which they help most; some are pulled more than once.
+/// `None` where no such way is found.
+pub(super) fn together(problem: &PlanProblem, plan: &Layout) -> Option<Vec<Lever>> {
+    let mut now = problem.clone();
+    let mut ratio = plan.prediction.worst_ratio();
+    let mut out = Vec::new();
+    while ratio > 1.0 && out.len() < MOST_PULLED {
+        let best = Lever::ALL
+            .into_iter()
+            .filter_map(|lever| {
+                let other = pulled(&now, lever)?;
+                let ratio = again(&other, plan)?.worst_ratio();
+                Some((ratio, lever, other))
+            })
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .filter(|b| b.0 < ratio * (1.0 - WORTH_SAYING))?;
+        (ratio, now) = (best.0, best.2);
+        out.push(best.1);
     }
-    predict_plan(&other, &plan.sites, plan.dwell_s, plan.runs)
+    Some(out).filter(|_| ratio <= 1.0)
 }
 
 /// Halves what two sources come from.
@@ -149,6 +188,8 @@ fn halve(inputs: &mut Inputs, one: Source, two: Source) {
     inputs.lines.iter_mut().filter(of_them).for_each(|l| *l = l.scaled(0.5));
 }
 
+/// More levers than these are another bench.
+const MOST_PULLED: usize = 8;
 /// 1 mGal: any gravimeter, or a gravity base station within a few kilometres.
 const MEASURED_GRAVITY_M_S2: f64 = 1e-5;
 
@@ -167,7 +208,7 @@ fn longer(problem: &PlanProblem, p: &Prediction, factor: f64) -> Prediction {
                 *u /= factor.sqrt();
             }
         }
-        let sum = |keep: &dyn Fn(super::Source) -> bool| {
+        let sum = |keep: &dyn Fn(Source) -> bool| {
             t.sources.iter().filter(|s| keep(s.0)).map(|s| s.1 * s.1).sum::<f64>().sqrt()
         };
         (t.u, t.u_statistical) = (sum(&|_| true), sum(&Source::averages_out));

@@ -143,17 +143,27 @@ impl Dial {
 
     /// At most about `most` of them, evenly spread about zero, with both ends.
     pub fn thinned(&self, most: usize) -> Vec<Site> {
+        self.thinned_indices(most).into_iter().map(|i| self.site(i)).collect()
+    }
+
+    fn thinned_indices(&self, most: usize) -> Vec<i64> {
         let stride = self.stride(most);
         let mut indices: Vec<i64> =
             (self.low..=self.high).filter(|i| i.rem_euclid(stride) == 0).collect();
         indices.extend([self.low, self.high]);
         indices.sort_unstable();
         indices.dedup();
-        indices.into_iter().map(|i| self.site(i)).collect()
+        indices
     }
 
     pub fn coarse(&self) -> Vec<Site> {
         self.thinned(COARSE)
+    }
+
+    /// Where those stand among all steps.
+    pub fn coarse_places(&self) -> Vec<usize> {
+        let place = |i: i64| usize::try_from(i - self.low).unwrap_or(0);
+        self.thinned_indices(COARSE).into_iter().map(place).collect()
     }
 
     /// All steps near some sites: as far as the first look left out, and at least one.

@@ -5,7 +5,7 @@ use super::exact::exact;
 use super::order::{OrderEffect, effects, ordered, whole};
 use super::predict::{Prediction, predict_plan};
 use super::problem::{PlanProblem, Possible, Site};
-use super::relax::{TOLERANCE, bound, relax};
+use super::relax::{TOLERANCE, Tangent, relax};
 use super::{phases, spare};
 
 /// What neighbours on the dial in the place of one angle may cost (variances).
@@ -58,8 +58,10 @@ pub(super) fn layout(
     let (same, turn) = (laid(&counted)?, laid(&phases::alternated(&dial, &counted, positions))?);
     let (value, table) = if turn.0 <= same.0 * TURN_COSTS { turn } else { same };
     let every_step = rows.rows(&dial.all());
-    let least = bound(&every_step, &coarse_rows, &relaxed, &fixed, free as f64, &goal)?
-        .max(f64::MIN_POSITIVE);
+    let everywhere = 0..every_step.len();
+    let one = core::slice::from_ref(&everywhere);
+    let tangent = Tangent::of(&every_step, one, &coarse_rows, &relaxed, &fixed, &goal)?;
+    let least = tangent.bound(&[free as f64])?.max(f64::MIN_POSITIVE);
     let sites = ordered(&rows, &table)?;
     Some(Layout {
         order: effects(&rows, &sites)?,

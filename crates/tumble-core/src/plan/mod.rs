@@ -20,6 +20,7 @@ mod search;
 mod shared;
 mod spare;
 mod variance;
+mod whole;
 
 pub use advice::{Gain, Lever, WORTH_SAYING};
 pub use order::OrderEffect;
@@ -39,6 +40,8 @@ pub const DEFAULT_TOTAL_S: f64 = 3600.0;
 pub const LONGEST_TOTAL_S: f64 = 7.0 * 86_400.0;
 /// Steps of the search for the least time.
 const TIME_STEPS: usize = 8;
+/// Distance from what shares of dwells could reach from which on whole numbers are looked at.
+const GAP_WORTH_A_LOOK: f64 = 0.002;
 /// The least time is found to this share.
 const TIME_TOLERANCE: f64 = 0.02;
 
@@ -142,6 +145,8 @@ pub struct Plan {
     pub by_runs: Vec<RunsChoice>,
     /// What would help.
     pub gains: Vec<Gain>,
+    /// What would meet the targets together, where no single one of [`Self::gains`] does.
+    pub together: Option<Vec<Lever>>,
     /// Noise of a reading over one LSB, where the converter is known.
     pub dither_lsb: Option<f64>,
     /// Whether repeats are spread over the step of the converter.
@@ -265,12 +270,18 @@ fn finished(problem: &PlanProblem, l: Layout, total_s: f64) -> Plan {
         })
         .collect();
     let met = l.prediction.worst_ratio() <= 1.0;
+    let gains = advice::gains(problem, &l, used_s);
+    let enough = gains.iter().any(|g| g.prediction.worst_ratio() <= 1.0);
+    let known_gap = Some(l.gap).filter(|g| *g > GAP_WORTH_A_LOOK);
+    let by_whole_numbers = known_gap.and_then(|_| whole::gap(problem, &l));
+    let gap = by_whole_numbers.map_or(l.gap, |w| w.min(l.gap).max(0.0));
     let timeline = estimator::Timeline::of(problem, &l.sites, l.dwell_s);
     Plan {
         starts_s: timeline.starts_s(problem, &l.sites, l.dwell_s),
         paper: paper(problem, l.runs, run),
         by_runs,
-        gains: advice::gains(problem, &l, used_s),
+        together: if met || enough { None } else { advice::together(problem, &l) },
+        gains,
         dither_lsb: variance::dither_lsb(problem),
         phases_spread: phases::needed(problem),
         met,
@@ -282,7 +293,7 @@ fn finished(problem: &PlanProblem, l: Layout, total_s: f64) -> Plan {
         run_s: run,
         total_s: used_s,
         prediction: l.prediction,
-        gap: l.gap,
+        gap,
         spare_price: l.spare_price,
         order: l.order,
     }

@@ -13,6 +13,8 @@
 //! **Source** Fedorov, Hackl, Model-Oriented Design of Experiments (1997), sections 2.4 and 2.7 (equivalence theorems, fixed
 //! part); Silvey, Titterington, Torsney 1978 (multiplicative algorithm).
 
+use core::ops::Range;
+
 use super::information::{Information, MOST, Row, dot, times};
 use super::problem::Criterion;
 
@@ -63,6 +65,13 @@ pub(super) struct Relaxed {
     pub multipliers: [f64; MOST],
 }
 
+/// Candidates that follow one another, with the number of positions that fall on them together.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Group {
+    pub candidates: Range<usize>,
+    pub total: f64,
+}
+
 /// Shares of `total` positions over candidates beside what is fixed, to a relative distance from the bound (variances).
 pub(super) fn relax(
     rows: &[Row],
@@ -71,7 +80,21 @@ pub(super) fn relax(
     goal: &Goal,
     tolerance: f64,
 ) -> Option<Relaxed> {
-    let mut w = vec![total / rows.len() as f64; rows.len()];
+    relax_groups(rows, fixed, &[Group { candidates: 0..rows.len(), total }], goal, tolerance)
+}
+
+/// The same where the numbers of positions in groups of candidates are given.
+pub(super) fn relax_groups(
+    rows: &[Row],
+    fixed: &Information,
+    groups: &[Group],
+    goal: &Goal,
+    tolerance: f64,
+) -> Option<Relaxed> {
+    let mut w = vec![0.0; rows.len()];
+    for g in groups {
+        w[g.candidates.clone()].fill(g.total / g.candidates.len().max(1) as f64);
+    }
     let mut lambda = goal.start();
     let mut best = Relaxed { weights: w.clone(), bound: 0.0, multipliers: lambda };
     let mut best_value = f64::INFINITY;
@@ -81,7 +104,7 @@ pub(super) fn relax(
         gradient(rows, &m, goal, &lambda, &mut d)?;
         if iteration % LOOK == 0 {
             let value = goal.value(&m)?;
-            let bound = bound_at(&m, goal, &lambda, total, &d, &w)?;
+            let bound = lower(&m, goal, &lambda, most(groups, &d) - mean_gradient(&d, &w))?;
             if bound > best.bound {
                 (best.bound, best.multipliers) = (bound, lambda);
             }
@@ -96,8 +119,11 @@ pub(super) fn relax(
         for (w, d) in w.iter_mut().zip(&d) {
             *w *= if goal.criterion == Criterion::D { *d } else { d.sqrt() };
         }
-        let sum: f64 = w.iter().sum();
-        w.iter_mut().for_each(|w| *w *= total / sum);
+        for g in groups {
+            let own = &mut w[g.candidates.clone()];
+            let sum: f64 = own.iter().sum();
+            own.iter_mut().for_each(|w| *w *= if sum > 0.0 { g.total / sum } else { 0.0 });
+        }
         if goal.criterion == Criterion::Minimax {
             let (c, _) = m.inverse()?;
             let mut sum = 0.0;
@@ -113,22 +139,52 @@ pub(super) fn relax(
     Some(best)
 }
 
-/// The bound over other candidates (all steps of the dial) from the best shares.
-pub(super) fn bound(
-    all: &[Row],
-    chosen: &[Row],
-    relaxed: &Relaxed,
-    fixed: &Information,
-    total: f64,
-    goal: &Goal,
-) -> Option<f64> {
-    let m = information(chosen, &relaxed.weights, fixed);
-    let mut d_all = vec![0.0; all.len()];
-    let mut d = vec![0.0; chosen.len()];
-    gradient(all, &m, goal, &relaxed.multipliers, &mut d_all)?;
-    gradient(chosen, &m, goal, &relaxed.multipliers, &mut d)?;
-    let largest = d_all.iter().chain(&d).fold(0.0, |a: f64, b| a.max(*b));
-    lower(&m, goal, &relaxed.multipliers, total * largest - mean_gradient(&d, &relaxed.weights))
+/// What ψ is at least for numbers of positions in groups of candidates: a tangent at some shares.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Tangent {
+    goal: Goal,
+    multipliers: [f64; MOST],
+    at: Information,
+    /// `Σ w d` there.
+    mean: f64,
+    /// Largest `d` of each group.
+    largest: Vec<f64>,
+}
+
+impl Tangent {
+    /// At the best shares over `chosen`, for all other candidates (all steps of the dial), in groups.
+    pub fn of(
+        all: &[Row],
+        groups: &[Range<usize>],
+        chosen: &[Row],
+        relaxed: &Relaxed,
+        fixed: &Information,
+        goal: &Goal,
+    ) -> Option<Self> {
+        let at = information(chosen, &relaxed.weights, fixed);
+        let mut d_all = vec![0.0; all.len()];
+        let mut d = vec![0.0; chosen.len()];
+        gradient(all, &at, goal, &relaxed.multipliers, &mut d_all)?;
+        gradient(chosen, &at, goal, &relaxed.multipliers, &mut d)?;
+        let largest = groups
+            .iter()
+            .map(|g| d_all[g.clone()].iter().fold(0.0, |a: f64, b| a.max(*b)))
+            .collect();
+        let mean = mean_gradient(&d, &relaxed.weights);
+        Some(Self { goal: *goal, multipliers: relaxed.multipliers, at, mean, largest })
+    }
+
+    /// What no plan with these numbers of positions in the groups is below.
+    pub fn bound(&self, totals: &[f64]) -> Option<f64> {
+        let most: f64 = totals.iter().zip(&self.largest).map(|(n, d)| n * d).sum();
+        lower(&self.at, &self.goal, &self.multipliers, most - self.mean)
+    }
+}
+
+/// `Σ_g n_g max_{j in g} d_j`: the most that any shares gain to first order.
+fn most(groups: &[Group], d: &[f64]) -> f64 {
+    let largest = |g: &Group| d[g.candidates.clone()].iter().fold(0.0, |a: f64, b| a.max(*b));
+    groups.iter().map(|g| g.total * largest(g)).sum()
 }
 
 fn information(rows: &[Row], w: &[f64], fixed: &Information) -> Information {
@@ -159,18 +215,6 @@ fn gradient(
 
 fn mean_gradient(d: &[f64], w: &[f64]) -> f64 {
     d.iter().zip(w).map(|(d, w)| d * w).sum()
-}
-
-fn bound_at(
-    m: &Information,
-    goal: &Goal,
-    lambda: &[f64; MOST],
-    total: f64,
-    d: &[f64],
-    w: &[f64],
-) -> Option<f64> {
-    let largest = d.iter().fold(0.0, |a: f64, b| a.max(*b));
-    lower(m, goal, lambda, total * largest - mean_gradient(d, w))
 }
 
 /// The bound from the largest possible gain to first order.

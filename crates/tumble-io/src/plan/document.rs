@@ -1,7 +1,7 @@
 //! A plan as plain data: for JSON and for renderers.
 
 use serde::Serialize;
-use tumble_core::plan::{Plan, Possible, Prediction, Term, TermPrediction, WORTH_SAYING};
+use tumble_core::plan::{Lever, Plan, Possible, Prediction, Term, TermPrediction, WORTH_SAYING};
 
 use super::PlanRequest;
 
@@ -58,6 +58,8 @@ pub struct PlanDocument {
     pub by_runs: Vec<PlannedRuns>,
     /// What would help, the limiting term's.
     pub gains: Vec<PlannedGain>,
+    /// What would meet the targets together, where no single one does; absent where no way was found.
+    pub together: Option<Vec<PlannedLever>>,
     /// Noise of a reading over one LSB.
     pub dither_lsb: Option<f64>,
     /// Whether repeats are spread over the step of the converter.
@@ -165,6 +167,17 @@ pub struct PlannedGain {
     pub met: bool,
 }
 
+/// Something to change about the bench or the question.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PlannedLever {
+    /// Name.
+    pub lever: String,
+    /// For people.
+    pub words: String,
+    /// How often: twice is a quarter where once is half.
+    pub times: usize,
+}
+
 /// Unit of a term's numbers.
 fn unit(term: Term) -> &'static str {
     match term {
@@ -243,6 +256,7 @@ impl PlanDocument {
                 })
                 .collect(),
             gains,
+            together: plan.together.as_deref().map(levers),
             dither_lsb: plan.dither_lsb,
             phases_spread: plan.phases_spread,
             assumed: request.assumed.clone(),
@@ -255,6 +269,22 @@ impl PlanDocument {
         // Plain data of finite numbers always serializes.
         serde_json::to_string_pretty(self).map(|t| t + "\n").unwrap_or_default()
     }
+}
+
+/// In the order in which they were pulled first.
+fn levers(pulled: &[Lever]) -> Vec<PlannedLever> {
+    let mut out: Vec<PlannedLever> = Vec::new();
+    for lever in pulled {
+        match out.iter_mut().find(|l| l.lever == lever.name()) {
+            Some(there) => there.times += 1,
+            None => out.push(PlannedLever {
+                lever: lever.name().into(),
+                words: lever.words().into(),
+                times: 1,
+            }),
+        }
+    }
+    out
 }
 
 fn positions(plan: &Plan) -> Vec<PlannedPosition> {

@@ -7,8 +7,8 @@ mod request;
 mod settings;
 
 pub use document::{
-    PlanDocument, PlannedGain, PlannedOrder, PlannedPaper, PlannedPosition, PlannedRuns,
-    PlannedSource, PlannedTerm,
+    PlanDocument, PlannedGain, PlannedLever, PlannedOrder, PlannedPaper, PlannedPosition,
+    PlannedRuns, PlannedSource, PlannedTerm,
 };
 pub use plan_file::{PlanFile, plan_toml, read_plan_file};
 pub use request::{PlanRequest, plan_request};

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use tumble_io::{PlanDocument, PlannedTerm};
+use tumble_io::{PlanDocument, PlannedLever, PlannedTerm};
 
 use super::units::{name, number, scale, shown};
 use super::{angles, degrees, duration};
@@ -89,16 +89,27 @@ fn headline(out: &mut String, d: &PlanDocument) {
     if let Some(t) = d.needed_s.filter(|t| *t > d.total_s) {
         could.insert(0, format!("about {} in all", duration(t)));
     }
-    let text = match (could.is_empty(), d.needed_s) {
-        (false, _) => format!("What would meet them: {}.", could.join("; or ")),
-        (true, None) => {
-            "No time meets them, nor any single change below: the bench must be better \
-                         in several ways, or the targets wider."
+    let text = match (&d.together, could.is_empty()) {
+        (_, false) => format!("What would meet them: {}.", could.join("; or ")),
+        (Some(levers), true) => {
+            let each: Vec<String> = levers.iter().map(repeated).collect();
+            format!("What would meet them, together: {}.", each.join("; "))
+        }
+        (None, true) => {
+            "No time meets them, nor what was tried of the bench: the targets must be wider, or \
+                         the bench another one."
                 .into()
         }
-        (true, Some(_)) => "No single change below meets them.".into(),
     };
     out.push_str(&wrapped("  ", &text, 2, WIDTH));
+}
+
+/// A change with how often: what is halved twice is a quarter.
+fn repeated(l: &PlannedLever) -> String {
+    match l.times {
+        1 => l.words.clone(),
+        n => format!("{}, and that {n} times over", l.words),
+    }
 }
 
 fn subject(out: &mut String, d: &PlanDocument) {
@@ -167,7 +178,7 @@ fn uncertainties(out: &mut String, d: &PlanDocument) {
 }
 
 fn by_source(out: &mut String, d: &PlanDocument) {
-    let wide = if d.predicted.len() <= 4 { 13 } else { 9 };
+    let wide = ((WIDTH - 28) / d.predicted.len().max(1)).min(13);
     let mut head = format!("  {:<26}", "standard uncertainty by");
     for t in &d.predicted {
         let _ = write!(head, "{:>wide$}", shortened(name(&t.term), wide - 1));

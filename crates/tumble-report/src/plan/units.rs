@@ -13,7 +13,8 @@ pub(super) fn scale(term: &str) -> (f64, &'static str) {
         "scale" => (1e6, "ppm"),
         "k2" => (1e6 * gn, "ug/g2"),
         "k3" => (1e6 * gn * gn, "ug/g3"),
-        "temperature" => (1e3, "mm/s2/K"),
+        "temp-bias" => (1e3, "mm/s2/K"),
+        "temp-scale" => (1e6, "ppm/K"),
         _ => (1.0, ""),
     }
 }
@@ -36,7 +37,8 @@ pub(super) fn name(term: &str) -> &str {
         "scale" => "scale error",
         "k2" => "K2",
         "k3" => "K3",
-        "temperature" => "bias/K",
+        "temp-bias" => "bias/K",
+        "temp-scale" => "scale/K",
         other => other,
     }
 }
