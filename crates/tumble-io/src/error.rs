@@ -243,6 +243,13 @@ pub enum Problem {
         /// What to do.
         remedy: &'static str,
     },
+    /// A document of another kind, or one that does not say what is needed.
+    Document {
+        /// What it is, or lacks.
+        what: String,
+        /// What to do.
+        remedy: &'static str,
+    },
     /// A problem of which a look at the file tells more.
     Advised {
         /// The problem.
@@ -363,6 +370,7 @@ impl fmt::Display for Problem {
                 visible(name),
                 list(known)
             ),
+            Self::Document { what, remedy } => write!(f, "{}; {remedy}", sentence(what)),
             Self::Format { seen, remedy } => write!(f, "{seen}; {remedy}"),
             Self::TooLarge { limit } => write!(
                 f,

@@ -2,6 +2,7 @@
 
 mod build;
 mod document;
+mod known;
 mod reader;
 
 use std::path::Path;
@@ -9,6 +10,7 @@ use std::path::Path;
 use tumble_core::noise::{Deviation, NoiseError, NoiseOptions, NoiseRecord, StepError, Times};
 
 pub use document::*;
+pub use known::{KnownNoise, read_document};
 
 use crate::error::{Place, ReadError};
 use crate::source::Watch;
