@@ -15,6 +15,8 @@ pub(super) struct Layout {
     pub time: Option<usize>,
     /// Unit of the times, where `--time-unit` or the header says it.
     pub time_unit: Option<TimeUnit>,
+    /// It was `--time-unit`: also dates are then what it says.
+    pub unit_is_given: bool,
     /// The dial, where it was recorded: it must not move.
     pub angle: Option<usize>,
     /// The line was a header, and no row.
@@ -76,7 +78,8 @@ fn named(columns: Columns, place: &Place, settings: &NoiseSettings) -> Result<La
         (given, _) => given,
     };
     let angle = columns.get("angle_deg").filter(|i| *i != reading);
-    Ok(Layout { columns, reading, time, time_unit, angle, header: true })
+    let unit_is_given = settings.time_unit.is_some();
+    Ok(Layout { columns, reading, time, time_unit, unit_is_given, angle, header: true })
 }
 
 /// A file of several columns without a header.
@@ -116,7 +119,8 @@ fn numbered(
             fail(format!("{seen}, no column `{column}`"), "give its number: --time 1")
         })?),
     };
-    Ok(Layout { columns, reading, time, time_unit: settings.time_unit, angle: None, header: false })
+    let (time_unit, unit_is_given) = (settings.time_unit, settings.time_unit.is_some());
+    Ok(Layout { columns, reading, time, time_unit, unit_is_given, angle: None, header: false })
 }
 
 /// Index of a column by its name, else by its number.

@@ -228,7 +228,7 @@ fn rows<R: std::io::Read>(
         let time = layout.time.filter(|_| feed.timed);
         if let Some(i) = time
             && std::mem::take(&mut is_first)
-            && dialect.time_unit.is_none()
+            && !layout.unit_is_given
             && real(row.text(i), DecimalSign::CommaOrPoint).is_none()
             && date_s(row.text(i)).is_some()
         {
