@@ -11,8 +11,10 @@ use std::path::Path;
 use tumble_core::noise::{Deviation, NoiseError, NoiseOptions, NoiseRecord, StepError, Times};
 
 pub use document::*;
+pub(crate) use known::from_json;
 pub use known::{KnownNoise, read_document};
 
+use crate::csv::Lines;
 pub use crate::csv::TimeUnit;
 use crate::error::{Place, ReadError, visible};
 use crate::source::Watch;
@@ -132,6 +134,26 @@ pub fn analyse(
 ) -> Result<NoiseDocument, NoiseFailure> {
     let mut record = NoiseRecord::new(&settings.deviations, settings.times);
     let read = reader::read(path, settings, &mut record, watch)?;
+    judged(&path.display().to_string(), settings, &read, record)
+}
+
+/// [`analyse`] of text, without a digest.
+pub(crate) fn analyse_text(
+    text: impl std::io::Read,
+    shown_as: &str,
+    settings: &NoiseSettings,
+) -> Result<NoiseDocument, NoiseFailure> {
+    let mut record = NoiseRecord::new(&settings.deviations, settings.times);
+    let read = reader::read_text(&mut Lines::new(text, shown_as), settings, &mut record)?;
+    judged(shown_as, settings, &read, record)
+}
+
+fn judged(
+    file: &str,
+    settings: &NoiseSettings,
+    read: &reader::Read,
+    record: NoiseRecord,
+) -> Result<NoiseDocument, NoiseFailure> {
     let options = NoiseOptions {
         interval_s: read.interval_s,
         scale: settings.scale.as_ref().map_or(1.0, |s| s.m_s2_per_unit),
@@ -139,7 +161,6 @@ pub fn analyse(
         fit_level: FIT_LEVEL,
         step: None,
     };
-    let file = path.display().to_string();
-    let analysis = record.finish(&options).map_err(|e| NoiseFailure::noise(&file, e))?;
-    Ok(build::build(&file, settings, &read, &analysis))
+    let analysis = record.finish(&options).map_err(|e| NoiseFailure::noise(file, e))?;
+    Ok(build::build(file, settings, read, &analysis))
 }
