@@ -20,7 +20,8 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 import allantools
 import numpy as np
 
-EXAMPLE = pathlib.Path(__file__).resolve().parents[2] / "target/release/examples/oadev"
+TARGET = os.environ.get("CARGO_TARGET_DIR") or pathlib.Path(__file__).resolve().parents[2] / "target"
+EXAMPLE = pathlib.Path(TARGET) / "release/examples/oadev"
 READINGS = 10_000_000
 OCTAVES = 22
 TURNS = 5

@@ -3,6 +3,8 @@
 
 #[path = "noise/coverage.rs"]
 mod coverage;
+#[path = "noise/exact.rs"]
+mod exact;
 #[path = "noise/nbs14.rs"]
 mod nbs14;
 #[path = "noise/published_curves.rs"]

@@ -49,7 +49,7 @@ fn regular(path: &Path, remedy: &'static str) -> Result<u64, Problem> {
 
 /// Told how far the reading of files has come.
 pub trait Watch: Sync + std::fmt::Debug {
-    /// `done` of `total` stored bytes of a file were read.
+    /// `done` of `total` stored bytes of a file were read; of a pipe the total is zero.
     fn progress(&self, file: &str, done: u64, total: u64);
 }
 
@@ -76,6 +76,8 @@ pub(crate) struct Source<'w> {
     length: u64,
     /// When it was written to last, at that time.
     written: Option<SystemTime>,
+    /// A pipe: without a length, and nothing to compare with at the end.
+    pipe: bool,
     unpacked: u64,
     watch: &'w dyn Watch,
 }
@@ -85,9 +87,27 @@ impl Source<'static> {
     pub(crate) fn open(path: &Path, shown_as: &str) -> Result<Self, ReadError> {
         let fail = |problem| ReadError { place: Place::file(shown_as), problem };
         regular(path, "name a CSV file").map_err(fail)?;
+        Self::opened(path, shown_as, false)
+    }
+
+    /// The same, or a pipe, which is read as it comes.
+    pub(crate) fn open_or_pipe(path: &Path, shown_as: &str) -> Result<Self, ReadError> {
+        let fail = |problem| ReadError { place: Place::file(shown_as), problem };
+        let kind = std::fs::metadata(path).map_err(|e| fail(Problem::Io(e)))?;
+        if kind.is_file() || kind.is_dir() {
+            return Self::open(path, shown_as);
+        }
+        Self::opened(path, shown_as, true)
+    }
+
+    fn opened(path: &Path, shown_as: &str, pipe: bool) -> Result<Self, ReadError> {
+        let fail = |problem| ReadError { place: Place::file(shown_as), problem };
         let file = File::open(path).map_err(|e| fail(Problem::Io(e)))?;
         let opened = file.metadata().map_err(|e| fail(Problem::Io(e)))?;
-        let (length, written) = (opened.len(), opened.modified().ok());
+        let (length, written) = match pipe {
+            true => (u64::MAX, None),
+            false => (opened.len(), opened.modified().ok()),
+        };
         let mut reader = DigestingReader::new(file.take(length));
         let mut head = vec![0u8; 4];
         let mut got = 0;
@@ -132,6 +152,7 @@ impl Source<'static> {
             shown_as: shown_as.to_owned(),
             length,
             written,
+            pipe,
             unpacked: 0,
             watch: &(),
         })
@@ -169,10 +190,11 @@ impl<'w> Source<'w> {
 
     /// Whether the file was written to since it was opened.
     pub(crate) fn changed(&self) -> bool {
-        std::fs::metadata(&self.path).is_ok_and(|now| {
-            now.len() != self.length
-                || (self.written.is_some() && now.modified().ok() != self.written)
-        })
+        !self.pipe
+            && std::fs::metadata(&self.path).is_ok_and(|now| {
+                now.len() != self.length
+                    || (self.written.is_some() && now.modified().ok() != self.written)
+            })
     }
 
     /// Digest of the file as it is stored.
@@ -181,7 +203,7 @@ impl<'w> Source<'w> {
     pub(crate) fn finish(self) -> io::Result<String> {
         let changed = self.changed();
         let (length, input) = (
-            self.length,
+            (!self.pipe).then_some(self.length),
             match self.packing {
                 Packing::Plain(input) => input,
                 Packing::Gzip(decoder) => decoder.into_inner(),
@@ -189,7 +211,7 @@ impl<'w> Source<'w> {
             },
         );
         let (digest, read) = input.into_inner().1.finish()?;
-        if changed || read != length {
+        if changed || length.is_some_and(|length| read != length) {
             return Err(io::Error::other(Stop::Changed));
         }
         Ok(digest)
@@ -246,7 +268,8 @@ impl Read for Source<'_> {
             Packing::Zst(decoder) => decoder.read(buffer).map_err(damaged("zstd"))?,
         };
         let stored = self.digesting().taken();
-        self.watch.progress(&self.shown_as, stored, self.length);
+        let length = if self.pipe { 0 } else { self.length };
+        self.watch.progress(&self.shown_as, stored, length);
         if !matches!(self.packing, Packing::Plain(_)) {
             self.unpacked += n as u64;
             if self.unpacked > UNPACKED_LIMIT {

@@ -9,6 +9,9 @@ use tumble_io::Watch;
 /// Reading that ends sooner shows nothing.
 const PATIENCE: Duration = Duration::from_millis(700);
 
+const FILE: &str = "reading {msg} {percent:>3} % [{bar:20}] {binary_bytes_per_sec}, {eta} left";
+const PIPE: &str = "reading {msg} {binary_bytes}, {binary_bytes_per_sec}";
+
 /// A line on standard error; silent where that is no terminal.
 #[derive(Debug)]
 pub(crate) struct Progress {
@@ -26,10 +29,6 @@ impl Progress {
             ProgressDrawTarget::stderr_with_hz(5)
         };
         let bar = ProgressBar::with_draw_target(Some(0), target);
-        let style = "reading {msg} {percent:>3} % [{bar:20}] {binary_bytes_per_sec}, {eta} left";
-        if let Ok(style) = ProgressStyle::with_template(style) {
-            bar.set_style(style.progress_chars("=> "));
-        }
         Self { bar, started: Instant::now(), file: Mutex::new(String::new()) }
     }
 
@@ -49,10 +48,17 @@ impl Watch for Progress {
             && *last != file
         {
             *last = file.to_owned();
+            // Nobody knows how long a pipe is.
+            let style = if total == 0 { PIPE } else { FILE };
+            if let Ok(style) = ProgressStyle::with_template(style) {
+                self.bar.set_style(style.progress_chars("=> "));
+            }
             let shown: String = file.chars().filter(|c| !c.is_control()).take(30).collect();
             self.bar.set_message(shown);
         }
-        self.bar.set_length(total);
+        if total > 0 {
+            self.bar.set_length(total);
+        }
         self.bar.set_position(done);
     }
 }

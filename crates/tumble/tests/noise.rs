@@ -271,6 +271,208 @@ fn the_folder_and_the_table() {
     assert!(err(&again).contains("already"), "{}", err(&again));
 }
 
+#[test]
+fn times_are_read_as_loggers_write_them() {
+    let codes = codes(3000);
+    let table = |header: &str, time: &dyn Fn(usize) -> String| {
+        codes.iter().enumerate().fold(format!("{header}\n"), |mut text, (i, c)| {
+            let _ = writeln!(text, "{},{c},x", time(i));
+            text
+        })
+    };
+    let ms = |i: usize| format!("{}", 1_700_000_000_000 + 20 * i as u64);
+    let date = |i: usize| {
+        let t = 0.02 * i as f64;
+        format!("2026-11-20T10:{:02}:{:06.3}Z", (t / 60.0) as u64, t % 60.0)
+    };
+    let plain = |i: usize| format!("{}", 20 * i);
+    let cases: [(String, &[&str]); 6] = [
+        (table("t_ms,acc_x,note", &ms), &["--time", "t_ms", "--column", "acc_x"]),
+        (table("time (ms),code,note", &ms), &["--time", "1"]),
+        (table("timestamp,code,note", &date), &["--time", "timestamp"]),
+        (table("t_s,code,note", &date), &[]),
+        (table("t_s,code,note", &plain), &["--time-unit", "ms"]),
+        (
+            table("0,100,x", &plain).replacen("0,100,x\n", "", 1),
+            &["--time", "1", "--time-unit", "ms", "--column", "2"],
+        ),
+    ];
+    let expected = analysed(lines(&codes).as_bytes(), &["--rate", "50"]);
+    for (text, extra) in cases {
+        // Without names the third column could be no header's, either.
+        let text = if extra.len() == 6 { text.replace(",x", ",0") } else { text };
+        let d = analysed(text.as_bytes(), extra);
+        assert!((d.input.rate_hz - 50.0).abs() < 1e-3, "{extra:?}: {}", d.input.rate_hz);
+        assert_eq!((d.input.rate_from.as_str(), d.input.missing), ("times", 0), "{extra:?}");
+        assert!(d.remarks.is_empty(), "{extra:?} {:?}", d.remarks);
+        let points = d.curves[0].points.iter().zip(&expected.curves[0].points);
+        for (a, b) in points {
+            assert!((a.deviation / b.deviation - 1.0).abs() < 1e-12, "{extra:?}");
+        }
+    }
+    // Taken as seconds, and said so: 20 s a reading is no logger's way.
+    let d = analysed(table("t_s,code,note", &plain).as_bytes(), &[]);
+    assert!((d.input.rate_hz - 0.05).abs() < 1e-9);
+    assert!(d.remarks.iter().any(|r| r.contains("--time-unit ms")), "{:?}", d.remarks);
+    let refusals: [(String, &[&str], &str); 4] = [
+        (table("t_ms,code,note", &ms), &[], "--time 't_ms'"),
+        (
+            table("t_ms,code,note", &ms),
+            &["--time", "t"],
+            "say which one holds the times: --time t_ms",
+        ),
+        (table("t [min],code,note", &plain), &["--time", "1"], "minutes or hours"),
+        (table("t_s,code,note", &date), &["--time-unit", "s"], "--time-unit date"),
+    ];
+    for (text, extra, says) in refusals {
+        let message = refused(text.as_bytes(), extra);
+        assert!(message.contains(says), "{says}: {message}");
+    }
+}
+
+#[test]
+fn units_are_not_guessed_but_said() {
+    let text: String = codes(3000).iter().fold("acc [g]\n".into(), |mut text, c| {
+        let _ = writeln!(text, "{:.3}", *c as f64 * 0.01);
+        text
+    });
+    let d = analysed(text.as_bytes(), &["--rate", "50", "--column", "1"]);
+    assert!(d.unit == "unit" && d.converter.is_none());
+    assert!(d.remarks.iter().any(|r| r.contains("--scale 9.80665")), "{:?}", d.remarks);
+    let codes = lines(&codes(3000));
+    let sensor = |mode: &str| {
+        analysed(codes.as_bytes(), &["--rate", "50", "--sensor", "adxl345", "--mode", mode])
+    };
+    // 256 LSB/g, however the range is written.
+    for mode in ["+-2 g or full resolution", "+-2 g", "2g", "±2 g"] {
+        let d = sensor(mode);
+        assert!((d.scale.unwrap().m_s2_per_unit / (9.80665 / 256.0) - 1.0).abs() < 1e-12, "{mode}");
+    }
+    let refusals: [(&[&str], &str); 8] = [
+        (&["--sensor", "ADXL345"], "--mode '+-2 g or full resolution'"),
+        (&["--sensor", "ADXL345", "--mode", "+-1 g"], "no one mode `+-1 g`"),
+        (&["--sensor", "ADXL34"], "is it ADXL345?"),
+        (&["--scale", "-2"], "without its sign"),
+        (&["--rate", "0"], "positive number"),
+        (&["--rate", "-5"], "positive number"),
+        (&["--rate", "1e-320"], "between 1e-6 and 1e9"),
+        (&["--passport", "r.csv"], "not a passport"),
+    ];
+    for (extra, says) in refusals {
+        let rate: &[&str] = if extra[0] == "--rate" { &[] } else { &["--rate", "50"] };
+        let message = refused(codes.as_bytes(), &[rate, extra].concat());
+        assert!(message.contains(says), "{says}: {message}");
+    }
+    for huge in ["1e300\n-1e300\n", "1e-300\n-1e-300\n"] {
+        let message = refused(huge.repeat(50).as_bytes(), &["--rate", "50"]);
+        assert!(message.contains("in another unit"), "{message}");
+    }
+}
+
+#[test]
+fn a_turned_sensor_is_no_record_of_noise() {
+    let mut text = String::from("angle_deg,code\n");
+    for (i, c) in codes(3000).iter().enumerate() {
+        let _ = writeln!(text, "{},{c}", if i < 2000 { "-30.02" } else { "-29" });
+    }
+    let message = refused(text.as_bytes(), &["--rate", "50"]);
+    assert!(
+        message.contains("line 2002, column angle_deg") && message.contains("tumble check"),
+        "{message}"
+    );
+    let still = text.replace("\n-29,", "\n-30,");
+    assert_eq!(analysed(still.as_bytes(), &["--rate", "50"]).input.readings, 3000);
+}
+
+/// Few readings share the extreme value by chance; that is no converter's end.
+#[test]
+fn a_short_record_is_not_said_to_be_clipped() {
+    let mut short: Vec<i64> = codes(150).iter().map(|c| c - 100).collect();
+    let top = *short.iter().max().unwrap();
+    (0..4).for_each(|i| short[30 * i] = top.max(5));
+    let d = analysed(lines(&short).as_bytes(), &["--rate", "50"]);
+    assert!(!d.remarks.iter().any(|r| r.contains("extreme")), "{:?}", d.remarks);
+}
+
+#[test]
+fn another_result_is_not_overwritten() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("r.csv"), lines(&codes(3000))).unwrap();
+    let run = |rate: &str, extra: &[&str]| {
+        let args = ["noise", "r.csv", "--rate", rate, "--out", "out", "--quiet"];
+        tumble(dir.path(), &[&args, extra].concat())
+    };
+    let json = || std::fs::read(dir.path().join("out/noise.json")).unwrap();
+    assert_eq!(run("50", &[]).status.code(), Some(0));
+    let first = json();
+    let o = run("60", &[]);
+    assert_eq!(o.status.code(), Some(2));
+    assert!(err(&o).contains("--replace"), "{}", err(&o));
+    assert_eq!(json(), first);
+    assert_eq!(run("60", &["--replace"]).status.code(), Some(0));
+    assert_ne!(json(), first);
+    assert_eq!(std::fs::read(dir.path().join("out.old-1/noise.json")).unwrap(), first);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_read_as_it_comes() {
+    use std::process::Stdio;
+    let text = lines(&codes(4000));
+    let dir = tempfile::tempdir().unwrap();
+    let start = |args: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_tumble"));
+        command.args(["noise", "-", "--rate", "50"]).args(args).current_dir(dir.path());
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+    };
+    let mut child = start(&["--json"]);
+    child.stdin.take().unwrap().write_all(text.as_bytes()).unwrap();
+    let o = child.wait_with_output().unwrap();
+    let d: NoiseDocument = serde_json::from_slice(&o.stdout).unwrap();
+    let file = analysed(text.as_bytes(), &["--rate", "50"]);
+    assert_eq!((&d.curves, &d.input.sha256), (&file.curves, &file.input.sha256));
+    // Ctrl-C while it waits: at once, with 130, and nothing is left behind.
+    let mut child = start(&["--out", "out"]);
+    let mut pipe = child.stdin.take().unwrap();
+    // More than a pipe holds: when it is written, the program reads, and listens to Ctrl-C.
+    pipe.write_all(text.repeat(40).as_bytes()).unwrap();
+    let pid = child.id().to_string();
+    assert!(Command::new("kill").args(["-INT", &pid]).status().unwrap().success());
+    let o = child.wait_with_output().unwrap();
+    drop(pipe);
+    assert_eq!(o.status.code(), Some(130), "{}", err(&o));
+    assert!(o.stdout.is_empty());
+    assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 0);
+}
+
+/// Rounding is drawn where noise spreads the readings, and nothing is promised where it does not.
+#[test]
+fn the_converter_stands_in_the_figure() {
+    let page = |codes: &[i64]| {
+        let dir = tempfile::tempdir().unwrap();
+        std::fs::write(dir.path().join("r.csv"), lines(codes)).unwrap();
+        let args = ["noise", "r.csv", "--rate", "50", "--scale", "0.01", "--out", "out", "--quiet"];
+        assert_eq!(tumble(dir.path(), &args).status.code(), Some(0));
+        let read = |name: &str| std::fs::read_to_string(dir.path().join("out").join(name)).unwrap();
+        let d: NoiseDocument = serde_json::from_str(&read("noise.json")).unwrap();
+        (read("noise.html"), read("noise.svg"), d)
+    };
+    let (html, svg, d) = page(&codes(5000));
+    assert!(svg.contains("rounding of the converter") && svg.contains("best dwell"));
+    assert!(html.contains("n = √2·N") && html.contains("µg/√Hz") && html.contains("√s"), "{html}");
+    assert!(!html.contains("rtHz") && !html.contains("m/s2"));
+    let line = &d.converter.unwrap().line;
+    let [tau, deviation] = line[0];
+    assert!((tau - 0.02).abs() < 1e-12 && (deviation / (0.01 / 12f64.sqrt()) - 1.0).abs() < 1e-12);
+    assert!((line[1][1] / deviation - (tau / line[1][0]).sqrt()).abs() < 1e-12);
+    // A reading in fifty is another one: noise far below a step.
+    let hidden: Vec<i64> = codes(5000).iter().map(|c| i64::from(*c > 104)).collect();
+    let (html, svg, d) = page(&hidden);
+    assert!(!svg.contains("rounding of the converter"));
+    assert!(html.contains("take no dwell from it"), "{:?}", d.dwell);
+    assert!(d.converter.unwrap().line.is_empty());
+}
+
 /// Bound of the memory, kB: window and levels of the streams (docs/noise.md), the program itself.
 const MOST_MEMORY_KB: u64 = 100_000;
 

@@ -149,6 +149,8 @@ pub struct NoiseAnalysis {
 const AS_GOOD: f64 = 1.1;
 /// Readings of one extreme value that make one think of the converter's end.
 const SHARE_AT_END: f64 = 0.01;
+/// Fewer are chance: in a short record two or three readings share the extreme value.
+const FEWEST_AT_END: u64 = 10;
 /// Steps between the extremes from which an end can be told from noise of a few steps.
 const STEPS_APART: f64 = 8.0;
 /// Noise, in steps, from which rounding is white noise of its own to 1 % (`metrology`: half a step).
@@ -294,7 +296,7 @@ fn remarks(
     if look.whole && look.greatest - look.least >= STEPS_APART {
         let ends = [(look.at_least, look.least), (look.at_greatest, look.greatest)];
         for (readings, value) in ends {
-            if readings as f64 > SHARE_AT_END * look.count as f64 {
+            if readings >= FEWEST_AT_END && readings as f64 > SHARE_AT_END * look.count as f64 {
                 out.push(NoiseRemark::AtAnEnd { readings, value });
             }
         }
@@ -310,6 +312,14 @@ fn remarks(
         _ => {}
     }
     out
+}
+
+impl ConverterFloor {
+    /// Allan deviation of the rounding alone at an averaging time, where noise spreads the readings over steps.
+    #[must_use]
+    pub fn at(&self, tau_s: f64) -> f64 {
+        self.n / tau_s.sqrt()
+    }
 }
 
 /// A coefficient in another unit.

@@ -1,6 +1,7 @@
 //! The overlapping Allan variance at octaves, straight from readings: no running sum of the whole record is kept.
 
 use super::Variance;
+use super::velocity::origin;
 use super::wide::{FUSED, four, one, running_sum};
 
 /// Points that are worked on at once: six streams of them lie in the nearest cache.
@@ -81,7 +82,7 @@ pub(super) fn octave_sums(
 
 /// Sums for the small factors, and the running sum at the start of each [`FAR_BLOCK`].
 fn first_pass(readings: &[f64], factors: &[usize], sums: &mut [f64]) -> Vec<f64> {
-    let reference = readings[0];
+    let reference = origin(readings).unwrap_or_default();
     let reach = 2 * factors.last().copied().unwrap_or(1);
     let mut starts = Vec::with_capacity(readings.len() / FAR_BLOCK + 1);
     let mut room = Aligned::new(reach + CHUNK.min(readings.len()) + 1);
@@ -112,7 +113,7 @@ fn first_pass(readings: &[f64], factors: &[usize], sums: &mut [f64]) -> Vec<f64>
 
 /// Sums for the large factors, from blocks that lie the smallest of them apart.
 fn second_pass(readings: &[f64], starts: &[f64], factors: &[usize], sums: &mut [f64]) {
-    let reference = readings[0];
+    let reference = origin(readings).unwrap_or_default();
     let points = readings.len() + 1;
     let apart = factors[0] / FAR_BLOCK;
     let mut room = Aligned::new(points.div_ceil(factors[0]) * FAR_BLOCK);

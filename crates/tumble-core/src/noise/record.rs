@@ -30,6 +30,11 @@ pub enum NoiseError {
         /// Its number, counted from one.
         reading: u64,
     },
+    /// Readings whose squares, or the squares of whose sums, are no numbers any more.
+    Magnitude {
+        /// The largest reading, without its sign.
+        largest: f64,
+    },
     /// Too short.
     TooShort {
         /// Readings of the longest piece.
@@ -60,9 +65,13 @@ impl core::fmt::Display for NoiseError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::NotFinite { reading } => write!(f, "reading {reading} is not finite"),
+            Self::Magnitude { largest } => write!(
+                f,
+                "readings of the size of {largest:e} cannot be computed with; give them in another unit (m/s², g, V or LSB)"
+            ),
             Self::TooShort { readings } => write!(
                 f,
-                "{readings} readings without a gap are too few; {FEWEST} are the least, and an hour at rest is a good start"
+                "{readings} readings in a row are too few; {FEWEST} are the least, and an hour at rest is a good start"
             ),
             Self::Constant { value } => write!(
                 f,
@@ -88,6 +97,9 @@ impl core::error::Error for NoiseError {}
 
 /// Fewest readings of the longest piece: three averages of three octaves.
 const FEWEST: u64 = 12;
+
+/// Sizes of the largest reading between which everything here stays finite, and not zero, also by the fourth power.
+const SIZES: core::ops::RangeInclusive<f64> = 1e-50..=1e50;
 
 /// One variance at one averaging factor, over all pieces.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -243,6 +255,10 @@ impl NoiseRecord {
         }
         if self.look.least == self.look.greatest {
             return Err(NoiseError::Constant { value: self.look.least });
+        }
+        let largest = self.look.greatest.abs().max(self.look.least.abs());
+        if !SIZES.contains(&largest) {
+            return Err(NoiseError::Magnitude { largest });
         }
         let useful = |p: &Pooled| 3 * p.variance.factor as u64 <= readings;
         let deviations = self.deviations.clone();

@@ -1,6 +1,7 @@
 //! Variances of a record that does not fit into memory.
 
 use super::differences::{second_differences, third_differences, windowed_second_differences};
+use super::velocity::origin;
 use super::{Deviation, KindSums, NoiseKind, Variance};
 
 /// Averaging factor up to which every place is used. Beyond, places are `m/FULL_OVERLAP` readings apart: what that costs
@@ -77,7 +78,7 @@ pub struct VarianceStream {
     deviation: Deviation,
     spacing: Spacing,
     interval_s: f64,
-    /// Taken from every reading: the first one.
+    /// Taken from every reading.
     reference: Option<f64>,
     sum: f64,
     readings: u64,
@@ -108,12 +109,10 @@ impl VarianceStream {
 
     /// The next readings.
     pub fn push(&mut self, readings: &[f64]) {
-        let Some(first) = readings.first() else { return };
-        if self.reference.is_none() {
-            self.reference = Some(*first);
+        let Some(reference) = self.reference.or_else(|| origin(readings)) else { return };
+        if self.reference.replace(reference).is_none() {
             self.add_point(0.0);
         }
-        let reference = self.reference.unwrap_or(*first);
         for y in readings {
             self.sum += y - reference;
             self.add_point(self.sum);
@@ -249,9 +248,14 @@ impl Level {
         for x in &self.points[self.done..] {
             self.kinds.push(*x);
             match (self.waiting.take(), deviation) {
-                (None, _) => self.waiting = Some(*x),
+                (None, Deviation::Modified) => self.waiting = Some(*x),
                 (Some(before), Deviation::Modified) => handed.push(0.5 * (before + x)),
-                (Some(before), _) => handed.push(before),
+                // The first of a pair at once: it may be the last of the record.
+                (None, _) => {
+                    self.waiting = Some(*x);
+                    handed.push(*x);
+                }
+                (Some(_), _) => {}
             }
         }
         self.seen += (self.points.len() - self.done) as u64;

@@ -45,3 +45,12 @@ impl Velocity {
         self.interval_s
     }
 }
+
+/// A value to count readings from, so that their running sum stays small: one of the first of them, and none that stands
+/// far off (loggers begin with zeros). Of whole readings it is whole, and sums stay exact.
+pub(super) fn origin(readings: &[f64]) -> Option<f64> {
+    const LOOKED_AT: usize = 31;
+    let mut first = readings[..readings.len().min(LOOKED_AT)].to_vec();
+    first.sort_by(f64::total_cmp);
+    first.get(first.len() / 2).copied()
+}

@@ -1,77 +1,73 @@
 //! The innermost loops, in the widest registers that the machine has (chosen when the program runs).
 
-use pulp::{Arch, Simd, WithSimd};
+use fearless_simd::{Level, Simd, SimdBase, SimdFloat, dispatch};
 
 /// Octaves that one pass over the points works on: each point is loaded once for all of them.
 pub(super) const FUSED: usize = 4;
 
 /// `Σ (x[i] − 2 x[i+m] + x[i+2m])²` of three streams of one length.
 pub(super) fn one(streams: [&[f64]; 3]) -> f64 {
-    Arch::new().dispatch(One(streams))
+    dispatch!(Level::new(), simd => one_in(simd, streams))
 }
 
 /// The same for `m, 2m, 4m, 8m`; streams at 0, m, 2m, 4m, 8m, 16m, of one length.
 pub(super) fn four(streams: [&[f64]; FUSED + 2]) -> [f64; FUSED] {
-    Arch::new().dispatch(Four(streams))
+    dispatch!(Level::new(), simd => four_in(simd, streams))
 }
 
-struct One<'a>([&'a [f64]; 3]);
-
-impl WithSimd for One<'_> {
-    type Output = f64;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        let [a, b, c] = self.0;
-        let n = a.len().min(b.len()).min(c.len());
-        let two = simd.splat_f64s(-2.0);
-        let (mut even, mut odd) = (simd.splat_f64s(0.0), simd.splat_f64s(0.0));
-        let [(a, a_rest), (b, b_rest), (c, c_rest)] = [a, b, c].map(|x| S::as_simd_f64s(&x[..n]));
-        for (k, ((a, b), c)) in a.iter().zip(b).zip(c).enumerate() {
-            let d = simd.mul_add_e_f64s(two, simd.sub_f64s(*b, *a), simd.sub_f64s(*c, *a));
-            if k % 2 == 0 {
-                even = simd.mul_add_e_f64s(d, d, even);
-            } else {
-                odd = simd.mul_add_e_f64s(d, d, odd);
-            }
-        }
-        let rest = a_rest.iter().zip(b_rest).zip(c_rest);
-        let tail: f64 = rest.map(|((a, b), c)| ((c - a) - 2.0 * (b - a)).powi(2)).sum();
-        simd.reduce_sum_f64s(simd.add_f64s(even, odd)) + tail
+/// Always inlined: the instructions are those of the caller's level.
+#[inline(always)]
+fn one_in<S: Simd>(simd: S, streams: [&[f64]; 3]) -> f64 {
+    let lanes = S::f64s::LEN;
+    let n = streams.iter().map(|s| s.len()).min().unwrap_or(0);
+    let two = S::f64s::splat(simd, -2.0);
+    // Two sums in turn, so that an addition need not wait for the last one.
+    let mut sums = [S::f64s::splat(simd, 0.0); 2];
+    let [a, b, c] = streams.map(|s| s[..n].chunks_exact(lanes));
+    let rest = [a.remainder(), b.remainder(), c.remainder()];
+    for (k, ((a, b), c)) in a.zip(b).zip(c).enumerate() {
+        let load = |x: &[f64]| S::f64s::from_slice(simd, x);
+        let a = load(a);
+        let d = two.mul_add(load(b) - a, load(c) - a);
+        sums[k % 2] = d.mul_add(d, sums[k % 2]);
     }
+    let tail = rest[0].iter().zip(rest[1]).zip(rest[2]);
+    let tail: f64 = tail.map(|((a, b), c)| square(*a, *b, *c)).sum();
+    (sums[0] + sums[1]).reduce_sum() + tail
 }
 
-struct Four<'a>([&'a [f64]; FUSED + 2]);
-
-impl WithSimd for Four<'_> {
-    type Output = [f64; FUSED];
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> [f64; FUSED] {
-        let n = self.0.iter().map(|s| s.len()).min().unwrap_or(0);
-        let two = simd.splat_f64s(-2.0);
-        let mut sums = [simd.splat_f64s(0.0); FUSED];
-        let split = self.0.map(|x| S::as_simd_f64s(&x[..n]));
-        let [x0, x1, x2, x4, x8, x16] = split.map(|s| s.0);
-        for (((((x0, x1), x2), x4), x8), x16) in x0.iter().zip(x1).zip(x2).zip(x4).zip(x8).zip(x16)
-        {
-            let from = |x: &S::f64s| simd.sub_f64s(*x, *x0);
-            let d = [from(x1), from(x2), from(x4), from(x8), from(x16)];
-            for k in 0..FUSED {
-                let z = simd.mul_add_e_f64s(two, d[k], d[k + 1]);
-                sums[k] = simd.mul_add_e_f64s(z, z, sums[k]);
-            }
+#[inline(always)]
+fn four_in<S: Simd>(simd: S, streams: [&[f64]; FUSED + 2]) -> [f64; FUSED] {
+    let lanes = S::f64s::LEN;
+    let n = streams.iter().map(|s| s.len()).min().unwrap_or(0);
+    let two = S::f64s::splat(simd, -2.0);
+    let mut sums = [S::f64s::splat(simd, 0.0); FUSED];
+    let chunks = streams.map(|s| s[..n].chunks_exact(lanes));
+    let rest = chunks.each_ref().map(|c| c.remainder());
+    let [x0, x1, x2, x4, x8, x16] = chunks;
+    for (((((x0, x1), x2), x4), x8), x16) in x0.zip(x1).zip(x2).zip(x4).zip(x8).zip(x16) {
+        let load = |x: &[f64]| S::f64s::from_slice(simd, x);
+        let x0 = load(x0);
+        // One by one: `map` is not inlined here, and what it calls would be built for the oldest machine.
+        let d = [load(x1) - x0, load(x2) - x0, load(x4) - x0, load(x8) - x0, load(x16) - x0];
+        for k in 0..FUSED {
+            let z = two.mul_add(d[k], d[k + 1]);
+            sums[k] = z.mul_add(z, sums[k]);
         }
-        let mut out = sums.map(|s| simd.reduce_sum_f64s(s));
-        let rest = split.map(|s| s.1);
-        for i in 0..rest[0].len() {
-            for k in 0..FUSED {
-                let (a, b, c) = (rest[0][i], rest[k + 1][i], rest[k + 2][i]);
-                out[k] += ((c - a) - 2.0 * (b - a)).powi(2);
-            }
-        }
-        out
     }
+    let mut out = sums.map(|s| s.reduce_sum());
+    for i in 0..rest[0].len() {
+        for k in 0..FUSED {
+            out[k] += square(rest[0][i], rest[k + 1][i], rest[k + 2][i]);
+        }
+    }
+    out
+}
+
+/// `(a − 2b + c)²`
+#[inline(always)]
+fn square(a: f64, b: f64, c: f64) -> f64 {
+    ((c - a) - 2.0 * (b - a)).powi(2)
 }
 
 /// Running sum of readings less a reference, from a start: `out[i] = start + Σ_{k<i} (y[k] − reference)`; gives the end.

@@ -7,11 +7,15 @@ use super::number::{DecimalSign, real};
 
 /// Unit of the column `t_s`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(crate) enum TimeUnit {
+pub enum TimeUnit {
+    /// s
     #[default]
     Seconds,
+    /// ms
     Milliseconds,
+    /// us
     Microseconds,
+    /// ns
     Nanoseconds,
     /// ISO 8601, `dd.mm.yyyy hh:mm:ss`, or a time of day.
     Date,

@@ -18,10 +18,11 @@ mod run_file;
 mod sketch;
 mod stream;
 
-pub(crate) use clock::{TimeUnit, date_s};
+pub use clock::TimeUnit;
+pub(crate) use clock::date_s;
 pub(crate) use dial::{AngleUnit, dms};
 pub(crate) use dialect::{Delimiter, Dialect, Missing};
-pub(crate) use header::{ColumnRef, Columns, KNOWN, Mapping, decoded};
+pub(crate) use header::{Columns, KNOWN, Mapping, decoded};
 pub(crate) use lines::Lines;
 pub(crate) use number::{CodeFormat, DecimalSign, integer, real, says_missing, trimmed};
 pub(crate) use roles::{HeaderUnit, Role, role, split_unit};

@@ -14,13 +14,13 @@ use crate::error::ReadError;
 use crate::source::Source;
 
 /// Gives a few bytes at a time.
-struct Drip<'a> {
+pub(super) struct Drip<'a> {
     rest: &'a [u8],
     step: usize,
 }
 
 impl<'a> Drip<'a> {
-    fn new(rest: &'a [u8]) -> Self {
+    pub(super) fn new(rest: &'a [u8]) -> Self {
         Self { rest, step: 0 }
     }
 }

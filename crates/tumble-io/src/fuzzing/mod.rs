@@ -5,6 +5,7 @@
 
 mod documents;
 mod files;
+mod noise;
 mod texts;
 
 use std::fmt::Display;
@@ -15,6 +16,7 @@ pub use documents::{catalogue_toml, experiment_toml, init, passport_json};
 pub use files::{
     code_stream, continuous_record, gz_source, run_file_averaged, run_file_raw, zst_source,
 };
+pub use noise::noise_record;
 pub use texts::{dates, dial_angles, header, numbers, plan_string};
 
 /// A target: its name and what it asserts.
@@ -22,7 +24,7 @@ pub type Target = (&'static str, fn(&[u8]));
 
 /// All targets, in the order in which a value passes through the parsers. Names are those of `fuzz/fuzz_targets` and
 /// `fuzz/corpus`.
-pub const TARGETS: [Target; 15] = [
+pub const TARGETS: [Target; 16] = [
     ("experiment_toml", experiment_toml),
     ("run_file_raw", run_file_raw),
     ("run_file_averaged", run_file_averaged),
@@ -38,6 +40,7 @@ pub const TARGETS: [Target; 15] = [
     ("zst_source", zst_source),
     ("plan_string", plan_string),
     ("catalogue_toml", catalogue_toml),
+    ("noise_record", noise_record),
 ];
 
 /// Longest message: what nobody scrolls back for.

@@ -1,8 +1,8 @@
 //! From the analysis to the document: shapes, units and sentences.
 
 use tumble_core::noise::{
-    BestDwell, Coefficient, NoiseAnalysis, NoiseCurve, NoiseFit, NoisePoint, NoiseRemark,
-    QUIET_JITTER, SHEET_UNITS,
+    BestDwell, Coefficient, ConverterFloor, NoiseAnalysis, NoiseCurve, NoiseFit, NoisePoint,
+    NoiseRemark, QUIET_JITTER, SHEET_UNITS,
 };
 
 use super::reader::Read;
@@ -11,6 +11,7 @@ use super::{
     NoiseDocument, NoiseInput, NoiseScale, NoiseSettings, NoiseSoftware, PointEntry, SCHEMA,
     SheetEntry,
 };
+use crate::csv::HeaderUnit;
 
 /// Symbols, words and the unit behind that of the readings.
 const COEFFICIENTS: [(&str, &str, &str); 5] = [
@@ -44,6 +45,7 @@ pub(super) fn build(
             readings: a.readings,
             rate_hz: 1.0 / a.interval_s,
             rate_from: if times.is_some() { "times" } else { "rate" }.into(),
+            time_column: read.time_column.clone(),
             jitter: times.map(|t| t.jitter()),
             pieces: a.pieces.clone(),
             missing: times.map_or(0, |t| t.missing()),
@@ -60,13 +62,7 @@ pub(super) fn build(
         level: settings.level,
         curves: a.curves.iter().map(curve).collect(),
         fit: a.fit.as_ref().map(|f| fit(f, a, unit)),
-        converter: a.floor.map(|c| ConverterEntry {
-            step: c.step,
-            of_a_reading: c.of_a_reading,
-            n: c.n,
-            noise_in_steps: c.noise_in_steps,
-            dithered: c.dithered,
-        }),
+        converter: a.floor.map(|c| converter(&c, a)),
         dwell: a.dwell.map(|d| DwellEntry {
             tau_s: d.tau_s,
             deviation: d.deviation,
@@ -74,9 +70,9 @@ pub(super) fn build(
             least_tau_s: d.least_tau_s,
             shares: d.shares,
             still_falling: d.still_falling,
-            why: why(&d),
+            why: why(&d, a),
         }),
-        remarks: remarks(read, a),
+        remarks: remarks(read, settings, a),
         software: NoiseSoftware {
             name: "tumble".into(),
             version: env!("CARGO_PKG_VERSION").into(),
@@ -155,7 +151,23 @@ fn fit(f: &NoiseFit, a: &NoiseAnalysis, unit: &str) -> FitEntry {
     }
 }
 
-fn why(d: &BestDwell) -> String {
+fn converter(c: &ConverterFloor, a: &NoiseAnalysis) -> ConverterEntry {
+    let points = a.curves.first().filter(|_| c.dithered).map_or(&[][..], |c| &c.points);
+    let ends = points.first().into_iter().chain(points.last());
+    ConverterEntry {
+        step: c.step,
+        of_a_reading: c.of_a_reading,
+        n: c.n,
+        noise_in_steps: c.noise_in_steps,
+        dithered: c.dithered,
+        line: ends.map(|p| [p.variance.tau_s, c.at(p.variance.tau_s)]).collect(),
+    }
+}
+
+fn why(d: &BestDwell, a: &NoiseAnalysis) -> String {
+    if a.floor.is_some_and(|c| !c.dithered) {
+        return "the curve is the converter's, for noise below half a step hides in its steps; take no dwell from it".into();
+    }
     let share = d.shares.and_then(|s| {
         s.into_iter().enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, s)| (i, 100.0 * s))
     });
@@ -179,16 +191,39 @@ fn why(d: &BestDwell) -> String {
     )
 }
 
-fn remarks(read: &Read, a: &NoiseAnalysis) -> Vec<String> {
+/// What the readings and times are said to be, and may not be.
+fn units_in_doubt(read: &Read, settings: &NoiseSettings, out: &mut Vec<String>) {
+    if let Some(step_s) = read.slow_s {
+        out.push(format!(
+            "the times are whole numbers that step by {step_s:.0}, and were taken as seconds: if they are milliseconds, give \
+             --time-unit ms"
+        ));
+    }
+    let (Some(unit), None) = (read.unit, &settings.scale) else { return };
+    let scale = match unit {
+        HeaderUnit::MetresPerSecondSquared => "1",
+        HeaderUnit::StandardGravity => "9.80665",
+        HeaderUnit::MilliGravity => "0.00980665",
+        _ => return,
+    };
+    out.push(format!("the header says {}: with --scale {scale} results are in m/s²", unit.text()));
+}
+
+/// `1 row`, `2 rows`.
+fn counted(count: u64, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
+}
+
+fn remarks(read: &Read, settings: &NoiseSettings, a: &NoiseAnalysis) -> Vec<String> {
     let mut out = Vec::new();
+    units_in_doubt(read, settings, &mut out);
     if let Some(times) = &read.times {
         if times.gaps() > 0 {
             out.push(format!(
-                "{} readings are missing in {} gaps: the record was cut there into {} pieces, and no difference reaches \
-                 across; nothing was filled in",
-                times.missing(),
-                times.gaps(),
-                a.pieces.len()
+                "{} missing in {}: the record was cut there into {}, and no difference reaches across; nothing was filled in",
+                counted(times.missing(), "reading is", "readings are"),
+                counted(times.gaps(), "gap", "gaps"),
+                counted(a.pieces.len() as u64, "piece", "pieces")
             ));
         }
         if times.jitter() > QUIET_JITTER {
@@ -200,14 +235,14 @@ fn remarks(read: &Read, a: &NoiseAnalysis) -> Vec<String> {
     }
     if read.times_unused {
         out.push(
-            "the column t_s was not used, for --rate was given: gaps and jitter are not seen"
+            "the column of times was not used, for --rate was given: gaps and jitter are not seen"
                 .into(),
         );
     }
     if read.without > 0 {
         out.push(format!(
-            "{} rows hold no reading: the record was cut at each; nothing was filled in",
-            read.without
+            "{} no reading: the record was cut there; nothing was filled in",
+            counted(read.without, "row holds", "rows hold")
         ));
     }
     for remark in &a.remarks {

@@ -48,8 +48,11 @@ pub struct NoiseInput {
     pub readings: u64,
     /// Readings a second.
     pub rate_hz: f64,
-    /// `rate` (given) or `times` (column `t_s`).
+    /// `rate` (given) or `times`.
     pub rate_from: String,
+    /// Column of the times; absent where they are not used.
+    #[serde(default)]
+    pub time_column: Option<String>,
     /// Standard deviation of the steps of time over the step; absent without times.
     pub jitter: Option<f64>,
     /// Readings of the pieces between gaps.
@@ -174,6 +177,10 @@ pub struct ConverterEntry {
     pub noise_in_steps: f64,
     /// Whether noise spreads the readings over steps.
     pub dithered: bool,
+    /// Time and deviation of rounding alone, at the shortest and the longest time; empty where noise does not spread the
+    /// readings.
+    #[serde(default)]
+    pub line: Vec<[f64; 2]>,
 }
 
 /// The best dwell.

@@ -164,6 +164,8 @@ mod tests {
         let settings = NoiseSettings {
             column: None,
             rate_hz: Some(50.0),
+            time: None,
+            time_unit: None,
             scale: scale.map(|s| Scale { m_s2_per_unit: s, source: "as given".into() }),
             deviations: Vec::new(),
             times: Times::Spaced(Spacing::Octave),

@@ -3,6 +3,7 @@
 mod build;
 mod document;
 mod known;
+mod layout;
 mod reader;
 
 use std::path::Path;
@@ -10,9 +11,12 @@ use std::path::Path;
 use tumble_core::noise::{Deviation, NoiseError, NoiseOptions, NoiseRecord, StepError, Times};
 
 pub use document::*;
+pub(crate) use known::from_json;
 pub use known::{KnownNoise, read_document};
 
-use crate::error::{Place, ReadError};
+use crate::csv::Lines;
+pub use crate::csv::TimeUnit;
+use crate::error::{Place, ReadError, visible};
 use crate::source::Watch;
 
 /// Name and major version of the document.
@@ -32,8 +36,12 @@ pub struct Scale {
 pub struct NoiseSettings {
     /// Column of the readings, by its header or number; else `code` or `output`.
     pub column: Option<String>,
-    /// Readings a second; else from the column `t_s`.
+    /// Readings a second; else from the times.
     pub rate_hz: Option<f64>,
+    /// Column of the times, by its header or number; else `t_s`.
+    pub time: Option<String>,
+    /// Unit of the times; else by the header, dates by their look, or seconds.
+    pub time_unit: Option<TimeUnit>,
     /// Without it results stay in the unit of the readings.
     pub scale: Option<Scale>,
     /// Deviations beside overlapping Allan.
@@ -70,6 +78,8 @@ pub enum NoiseFailure {
     NoRate {
         /// File.
         file: String,
+        /// A column that looks like times.
+        times: Option<String>,
     },
 }
 
@@ -96,10 +106,16 @@ impl std::fmt::Display for NoiseFailure {
             Self::Read(e) => write!(f, "{e}"),
             Self::Times { file, error } => write!(f, "{}: {error}", place(file)),
             Self::Noise { file, error } => write!(f, "{}: {error}", place(file)),
-            Self::NoRate { file } => write!(
+            Self::NoRate { file, times: None } => write!(
                 f,
                 "{}: the rate is not known; give it with --rate HZ, or times in a column `t_s` (seconds)",
                 place(file)
+            ),
+            Self::NoRate { file, times: Some(column) } => write!(
+                f,
+                "{}: the rate is not known; give it with --rate HZ, or say which column holds the times: --time '{}'",
+                place(file),
+                visible(column)
             ),
         }
     }
@@ -117,8 +133,27 @@ pub fn analyse(
     watch: &dyn Watch,
 ) -> Result<NoiseDocument, NoiseFailure> {
     let mut record = NoiseRecord::new(&settings.deviations, settings.times);
-    let read =
-        reader::read(path, settings.column.as_deref(), settings.rate_hz, &mut record, watch)?;
+    let read = reader::read(path, settings, &mut record, watch)?;
+    judged(&path.display().to_string(), settings, &read, record)
+}
+
+/// [`analyse`] of text, without a digest.
+pub(crate) fn analyse_text(
+    text: impl std::io::Read,
+    shown_as: &str,
+    settings: &NoiseSettings,
+) -> Result<NoiseDocument, NoiseFailure> {
+    let mut record = NoiseRecord::new(&settings.deviations, settings.times);
+    let read = reader::read_text(&mut Lines::new(text, shown_as), settings, &mut record)?;
+    judged(shown_as, settings, &read, record)
+}
+
+fn judged(
+    file: &str,
+    settings: &NoiseSettings,
+    read: &reader::Read,
+    record: NoiseRecord,
+) -> Result<NoiseDocument, NoiseFailure> {
     let options = NoiseOptions {
         interval_s: read.interval_s,
         scale: settings.scale.as_ref().map_or(1.0, |s| s.m_s2_per_unit),
@@ -126,7 +161,6 @@ pub fn analyse(
         fit_level: FIT_LEVEL,
         step: None,
     };
-    let file = path.display().to_string();
-    let analysis = record.finish(&options).map_err(|e| NoiseFailure::noise(&file, e))?;
-    Ok(build::build(&file, settings, &read, &analysis))
+    let analysis = record.finish(&options).map_err(|e| NoiseFailure::noise(file, e))?;
+    Ok(build::build(file, settings, read, &analysis))
 }

@@ -4,10 +4,11 @@ use std::path::Path;
 
 use tumble_core::noise::{FIRST_READINGS, NoiseRecord, Step, StepWatch};
 
-use super::NoiseFailure;
+use super::layout::{Layout, layout};
+use super::{NoiseFailure, NoiseSettings};
 use crate::csv::{
-    ColumnRef, Columns, DecimalSign, Dialect, FieldBuffer, Lines, Mapping, Row, real, says_missing,
-    trimmed,
+    DecimalSign, Dialect, FieldBuffer, HeaderUnit, Lines, Row, TimeUnit, date_s, real,
+    says_missing, trimmed,
 };
 use crate::error::{Place, Problem, ReadError};
 use crate::source::{Source, Watch};
@@ -15,7 +16,13 @@ use crate::source::{Source, Watch};
 /// Readings that are handed on at once.
 const BATCH: usize = 1 << 14;
 
+/// An angle of the dial that has moved, degrees: less is a jittery display.
+const MOVED_DEG: f64 = 0.5;
+/// Whole numbers that step by at least so many seconds are likelier parts of seconds.
+const SLOW_S: f64 = 1.5;
+
 /// What reading gives beside the record.
+#[derive(Debug)]
 pub(super) struct Read {
     /// Digest of the file as it is stored.
     pub sha256: String,
@@ -27,15 +34,14 @@ pub(super) struct Read {
     pub without: u64,
     /// The column that was read; `None` for bare numbers.
     pub column: Option<String>,
+    /// The column of times.
+    pub time_column: Option<String>,
     /// The file has times, and they were not used.
     pub times_unused: bool,
-}
-
-/// Where the fields of a row stand.
-struct Layout {
-    columns: Columns,
-    reading: usize,
-    time: Option<usize>,
+    /// The times were read as seconds without `--time-unit`, and are whole numbers that step by this many.
+    pub slow_s: Option<f64>,
+    /// Unit that the header of the readings names.
+    pub unit: Option<HeaderUnit>,
 }
 
 /// Hands readings on in batches, and cuts the record where times say so.
@@ -48,7 +54,11 @@ struct Feed<'r> {
     breaks: Vec<usize>,
     watch: Option<StepWatch>,
     timed: bool,
+    /// All times are whole numbers.
+    whole_times: bool,
     file: String,
+    /// Name of the column of times.
+    time_name: String,
 }
 
 impl Feed<'_> {
@@ -81,13 +91,14 @@ impl Feed<'_> {
             self.first.push((line, time, value));
             return if self.first.len() >= FIRST_READINGS { self.begin() } else { Ok(()) };
         }
+        self.whole_times &= time.fract() == 0.0;
         let Some(watch) = &mut self.watch else { return Ok(()) };
         match watch.push(time) {
             Step::Regular | Step::Short => {}
             Step::Gap { .. } => self.cut()?,
             Step::Back => {
                 return Err(NoiseFailure::Read(ReadError {
-                    place: Place::field(self.file.as_str(), line, "t_s"),
+                    place: Place::field(self.file.as_str(), line, self.time_name.as_str()),
                     problem: Problem::Field {
                         text: time.to_string(),
                         expected: "after the time before it",
@@ -116,171 +127,198 @@ impl Feed<'_> {
     }
 }
 
-/// Reads a file into a record.
+/// Reads a file, or a pipe, into a record.
 pub(super) fn read(
     path: &Path,
-    column: Option<&str>,
-    rate_hz: Option<f64>,
+    settings: &NoiseSettings,
     record: &mut NoiseRecord,
     watch: &dyn Watch,
 ) -> Result<Read, NoiseFailure> {
     let file = path.display().to_string();
-    let source = Source::open(path, &file)?.watched(watch);
+    let source = Source::open_or_pipe(path, &file)?.watched(watch);
     let mut lines = Lines::new(source, &file);
+    let mut read = read_text(&mut lines, settings, record)?;
+    read.sha256 = lines
+        .into_inner()
+        .finish()
+        .map_err(|e| ReadError { place: Place::file(file), problem: Source::problem(e) })?;
+    Ok(read)
+}
+
+/// Reads text into a record; the digest is left empty.
+pub(super) fn read_text<R: std::io::Read>(
+    lines: &mut Lines<R>,
+    settings: &NoiseSettings,
+    record: &mut NoiseRecord,
+) -> Result<Read, NoiseFailure> {
+    let file = lines.shown_as().to_owned();
     let first = lines.next_data()?.map(|(n, line)| (n, line.to_vec()));
     let Some((number, line)) = first else {
         let what = "no readings in the file; give one reading a line, or a header with a column `code` or `output`";
         return Err(ReadError { place: Place::file(file), problem: Problem::Empty { what } }.into());
     };
-    let layout = layout(&line, &Place::line(file.as_str(), number), column)?;
-    let has_time = layout.as_ref().is_some_and(|l| l.time.is_some());
-    let times_unused = has_time && rate_hz.is_some();
-    if rate_hz.is_none() && !has_time {
-        return Err(NoiseFailure::NoRate { file });
+    let layout = layout(&line, &Place::line(file.as_str(), number), settings)?;
+    let time = layout.as_ref().and_then(|l| l.time);
+    if settings.rate_hz.is_none() && time.is_none() {
+        let times = layout.as_ref().and_then(Layout::likely_times).map(ToOwned::to_owned);
+        return Err(NoiseFailure::NoRate { file, times });
     }
-    let header = layout.as_ref().is_some_and(|l| l.header);
-    if !header {
+    if !layout.as_ref().is_some_and(|l| l.header) {
         lines.put_back();
     }
-    let layout = layout.map(|l| Layout { columns: l.columns, reading: l.reading, time: l.time });
+    let name = |i: usize| layout.as_ref().map(|l| l.columns.name(i).to_owned());
+    let time_column = time.and_then(name);
     let mut feed = Feed {
         record,
         batch: Vec::with_capacity(BATCH),
         first: Vec::new(),
         breaks: Vec::new(),
         watch: None,
-        timed: rate_hz.is_none(),
+        timed: settings.rate_hz.is_none(),
+        whole_times: true,
         file: file.clone(),
+        time_name: time_column.clone().unwrap_or_default(),
     };
-    let without = rows(&mut lines, layout.as_ref(), &mut feed)?;
+    let (without, time_unit) = rows(lines, layout.as_ref(), &mut feed)?;
     if feed.timed && feed.watch.is_none() {
         feed.begin()?;
     }
     feed.flush()?;
     let times = feed.watch.take();
-    let interval_s = match (rate_hz, &times) {
+    let interval_s = match (settings.rate_hz, &times) {
         (Some(rate), _) => 1.0 / rate,
         (None, Some(watch)) => watch.interval_s().map_err(|e| NoiseFailure::times(&file, e))?,
-        (None, None) => return Err(NoiseFailure::NoRate { file }),
+        (None, None) => return Err(NoiseFailure::NoRate { file, times: None }),
     };
-    let sha256 = lines
-        .into_inner()
-        .finish()
-        .map_err(|e| ReadError { place: Place::file(file), problem: Source::problem(e) })?;
-    let column = layout.map(|l| l.columns.name(l.reading).to_owned());
-    Ok(Read { sha256, interval_s, times, without, column, times_unused })
+    let seconds = settings.time_unit.is_none() && time_unit.is_none_or(|u| u == TimeUnit::Seconds);
+    let slow = times.is_some() && seconds && feed.whole_times && interval_s >= SLOW_S;
+    Ok(Read {
+        sha256: String::new(),
+        interval_s,
+        times,
+        without,
+        column: layout.as_ref().and_then(|l| name(l.reading)),
+        time_column: time_column.filter(|_| settings.rate_hz.is_none()),
+        times_unused: time.is_some() && settings.rate_hz.is_some(),
+        slow_s: slow.then_some(interval_s),
+        unit: layout.as_ref().and_then(Layout::unit_of_readings),
+    })
 }
 
-/// All rows; gives the number of those without a reading.
+/// All rows; gives the number of those without a reading, and the unit of the times where something says it.
 fn rows<R: std::io::Read>(
     lines: &mut Lines<R>,
     layout: Option<&Layout>,
     feed: &mut Feed<'_>,
-) -> Result<u64, NoiseFailure> {
+) -> Result<(u64, Option<TimeUnit>), NoiseFailure> {
+    let Some(layout) = layout else { return Ok((bare_rows(lines, feed)?, None)) };
     let file = lines.shown_as().to_owned();
-    let dialect = Dialect::default();
+    let mut dialect = Dialect { time_unit: layout.time_unit, ..Dialect::default() };
     let mut buffer = FieldBuffer::default();
+    let mut dial = Dial::default();
     let mut without = 0;
+    let mut is_first = true;
     while let Some((number, line)) = lines.next_data()? {
-        let Some(layout) = layout else {
-            let text = trimmed(line);
-            match real(text, DecimalSign::CommaOrPoint) {
-                Some(value) => feed.reading(value)?,
-                None if says_missing(text) => {
-                    without += 1;
-                    feed.missing()?;
-                }
-                None => {
-                    return Err(ReadError {
-                        place: Place::line(file, number),
-                        problem: Problem::Field {
-                            text: String::from_utf8_lossy(text).into_owned(),
-                            expected: "a number",
-                            remedy: "give one reading a line, or a header with a column `code` or `output`",
-                        },
-                    }
-                    .into());
-                }
-            }
-            continue;
-        };
         let fields = buffer.split(line, layout.columns.delimiter);
         let row = Row { fields, columns: &layout.columns, file: &file, line: number };
         row.check_width()?;
+        if let Some(angle) = layout.angle {
+            dial.stands_still(&row, angle)?;
+        }
+        let time = layout.time.filter(|_| feed.timed);
+        if let Some(i) = time
+            && std::mem::take(&mut is_first)
+            && !layout.unit_is_given
+            && real(row.text(i), DecimalSign::CommaOrPoint).is_none()
+            && date_s(row.text(i)).is_some()
+        {
+            dialect.time_unit = Some(TimeUnit::Date);
+        }
         if says_missing(row.text(layout.reading)) {
             without += 1;
             feed.missing()?;
             continue;
         }
-        let value = row.real(layout.reading, "a number")?;
-        match layout.time.filter(|_| feed.timed) {
-            Some(time) => feed.timed_reading(number, row.time_s(time, &dialect)?, value)?,
+        let value = row.real(layout.reading, "a number").map_err(own_remedy)?;
+        match time {
+            Some(time) => {
+                let time = row.time_s(time, &dialect).map_err(own_remedy)?;
+                feed.timed_reading(number, time, value)?;
+            }
             None => feed.reading(value)?,
+        }
+    }
+    Ok((without, dialect.time_unit))
+}
+
+/// One number a line; gives the number of those that say that there is none.
+fn bare_rows<R: std::io::Read>(
+    lines: &mut Lines<R>,
+    feed: &mut Feed<'_>,
+) -> Result<u64, NoiseFailure> {
+    let file = lines.shown_as().to_owned();
+    let mut without = 0;
+    while let Some((number, line)) = lines.next_data()? {
+        let text = trimmed(line);
+        match real(text, DecimalSign::CommaOrPoint) {
+            Some(value) => feed.reading(value)?,
+            None if says_missing(text) => {
+                without += 1;
+                feed.missing()?;
+            }
+            None => {
+                return Err(ReadError {
+                    place: Place::line(file, number),
+                    problem: Problem::Field {
+                        text: String::from_utf8_lossy(text).into_owned(),
+                        expected: "a number",
+                        remedy: "give one reading a line, or a header with a column `code` or `output`",
+                    },
+                }
+                .into());
+            }
         }
     }
     Ok(without)
 }
 
-/// A layout, and whether the line was a header.
-struct Found {
-    columns: Columns,
-    reading: usize,
-    time: Option<usize>,
-    header: bool,
+/// The dial's angle, where the record has one.
+#[derive(Default)]
+struct Dial {
+    first_deg: Option<f64>,
 }
 
-/// What the first line says; `None` for bare numbers.
-fn layout(line: &[u8], place: &Place, column: Option<&str>) -> Result<Option<Found>, ReadError> {
-    if column.is_none() && real(trimmed(line), DecimalSign::CommaOrPoint).is_some() {
-        return Ok(None);
-    }
-    let number = column.and_then(|c| c.parse::<u32>().ok());
-    let columns = match Columns::parse(line, place, &Dialect::default(), &Mapping::new()) {
-        Ok(columns) => columns,
-        Err(ReadError { problem: Problem::NoHeader { columns: width, .. }, .. }) => {
-            let Some(number) = number else {
-                return Err(ReadError {
-                    place: place.clone(),
-                    problem: Problem::Columns {
-                        seen: Vec::new(),
-                        what: format!("{width} numbers a line and no names"),
-                        remedy: "name the columns in a first line, or give the number of the readings' column: \
-                                 --column 2"
-                            .into(),
-                    },
-                });
-            };
-            let mapping = Mapping::from([("output".to_owned(), ColumnRef::Number(number))]);
-            // As a header it would show the same separator.
-            let text = crate::csv::decoded(line);
-            let delimiter = Some(crate::csv::Delimiter::of_header(&text));
-            let dialect = Dialect { delimiter, ..Dialect::default() };
-            let columns = Columns::numbered(width, place, &dialect, &mapping)
-                .map_err(|_| unknown(place, &[format!("columns 1 to {width}")], column))?;
-            let reading = columns.get("output").unwrap_or(0);
-            return Ok(Some(Found { columns, reading, time: None, header: false }));
+impl Dial {
+    /// Refuses a record of several dwells: its steps are no noise.
+    fn stands_still(&mut self, row: &Row<'_>, index: usize) -> Result<(), ReadError> {
+        let Some(angle_deg) = real(row.text(index), DecimalSign::CommaOrPoint) else {
+            return Ok(());
+        };
+        let first_deg = *self.first_deg.get_or_insert(angle_deg);
+        if (angle_deg - first_deg).abs() <= MOVED_DEG {
+            return Ok(());
         }
-        Err(e) => return Err(e),
-    };
-    let reading = match (column, number) {
-        (None, _) => columns.get("code").or_else(|| columns.get("output")),
-        (Some(name), number) => columns
-            .find(name, place)
-            .ok()
-            .or_else(|| number.and_then(|n| (n as usize).checked_sub(1)))
-            .filter(|i| *i < columns.names.len()),
-    };
-    let Some(reading) = reading else { return Err(unknown(place, &columns.names, column)) };
-    let time = columns.get("t_s");
-    Ok(Some(Found { columns, reading, time, header: true }))
+        Err(ReadError {
+            place: Place::field(row.file, row.line, row.columns.name(index)),
+            problem: Problem::Field {
+                text: String::from_utf8_lossy(row.text(index)).into_owned(),
+                expected: "the angle of the first row: the sensor was turned",
+                remedy: "give a record at rest, the rows of one dwell (`tumble check` shows the noise of each dwell)",
+            },
+        })
+    }
 }
 
-fn unknown(place: &Place, names: &[String], column: Option<&str>) -> ReadError {
-    let what = match column {
-        Some(c) => format!("no column `{c}`"),
-        None => "no column `code` or `output`".to_owned(),
-    };
-    let remedy = "say which one holds the readings: --column NAME, or --column 2".to_owned();
-    let problem = Problem::Columns { seen: names.to_vec(), what, remedy };
-    ReadError { place: place.clone(), problem }
+/// Remedies of experiment.toml do not help here.
+fn own_remedy(mut e: ReadError) -> ReadError {
+    if let Problem::Field { remedy, text, .. } = &mut e.problem {
+        if remedy.contains("\"date\"") {
+            *remedy = "give --time-unit date where these are dates or times of day";
+        } else if remedy.contains("[csv]") {
+            *remedy = "write decimal points, or decimal commas in a file with `;` between columns; no thousands marks";
+        } else if remedy.contains("`columns`") && text.is_empty() {
+            *remedy = "fill in the empty cell or remove the row, or give --rate HZ (the times are then not used)";
+        }
+    }
+    e
 }

@@ -10,6 +10,12 @@ use super::mark::{colour, marker};
 pub(crate) enum Sample {
     /// A run's line.
     Line(usize),
+    /// A line without markers.
+    Plain(usize),
+    /// A fine dashed line.
+    Edge(usize),
+    /// A dashed line.
+    Dashed(usize),
     /// A run's marker.
     Marker(usize),
     /// A shaded band in a series colour.
@@ -63,6 +69,9 @@ fn draw(sample: Sample, x: f64, y: f64) -> Markup {
                     path .dot d=(marker(run, x + 10.0, y, 3.6)) {}
                 }
             }
+            Sample::Plain(series) => { path class={ "line " (colour(series)) } d=(horizontal) {} }
+            Sample::Edge(series) => { path class={ "edge " (colour(series)) } d=(horizontal) {} }
+            Sample::Dashed(series) => { path class={ "line dashed " (colour(series)) } d=(horizontal) {} }
             Sample::Marker(run) => {
                 path class={ "dot " (colour(run)) } d=(marker(run, x + 10.0, y, 3.6)) {}
             }

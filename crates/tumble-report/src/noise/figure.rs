@@ -13,6 +13,10 @@ const RIGHT: f64 = WIDTH - 16.0;
 const HEIGHT: f64 = 380.0;
 /// Points that are drawn with a marker and a bar; more are a line.
 const MOST_MARKED: usize = 80;
+/// Colour of the converter's line.
+const ROUNDING: usize = 4;
+/// Curves stand so far beside one another: bars on one place could not be told apart.
+const APART: f64 = 4.0;
 /// Symbols of the components.
 const SYMBOLS: [&str; 5] = ["Q", "N", "B", "K", "R"];
 
@@ -67,7 +71,12 @@ pub(super) fn figure(d: &NoiseDocument) -> Option<Figure> {
         .map(|(i, curve)| (Sample::Marker(i), deviation_name(&curve.deviation).to_owned()))
         .collect();
     if d.fit.is_some() {
-        entries.push((Sample::Line(5), "fitted; dashed: what each coefficient adds".into()));
+        entries.push((Sample::Plain(5), "fitted".into()));
+        entries.push((Sample::Edge(5), "what each coefficient adds".into()));
+    }
+    let rounding = d.converter.as_ref().map_or(&[][..], |c| &c.line);
+    if !rounding.is_empty() {
+        entries.push((Sample::Dashed(ROUNDING), "rounding of the converter alone".into()));
     }
     let (keys, keys_height) = legend(&entries, (LEFT - 10.0, RIGHT), 6.0);
     let top = keys_height + 16.0;
@@ -84,8 +93,12 @@ pub(super) fn figure(d: &NoiseDocument) -> Option<Figure> {
         (axes(&x, &y, (top, bottom), d))
         g clip-path="url(#tumble-noise-clip)" {
             (model(d, &x, &y))
+            path class={ "line dashed " (colour(ROUNDING)) } d=(path(rounding.iter().map(|[t, v]| (x.at(*t), y.at(*v))))) {}
             (best(d, &x, &y, (top, bottom)))
-            @for (i, curve) in d.curves.iter().enumerate() { (measured(i, curve, &x, &y)) }
+            @for (i, curve) in d.curves.iter().enumerate() {
+                (measured(i, curve, &x, &y, APART * i as f64))
+            }
+            (symbols(d, &x, &y, (top, bottom)))
         }
     };
     let title = format!("Noise against the averaging time: {}", deviation_name(&allan.deviation));
@@ -104,6 +117,9 @@ fn caption(d: &NoiseDocument) -> String {
             " Slopes: Q −1, N −1/2, B 0, K +1/2, R +1. The line is their sum, fitted to the Allan variances with their \
              covariance.",
         );
+    }
+    if d.curves.len() > 1 {
+        text.push_str(" Points of one time stand beside one another; those of the Allan deviation stand at it.");
     }
     if let Some(best) = &d.dwell {
         text.push_str(&format!(" The vertical line is the best dwell, {}.", duration(best.tau_s)));
@@ -151,11 +167,27 @@ fn model(d: &NoiseDocument, x: &Log, y: &Log) -> Markup {
         @for i in seen {
             path class={ "edge " (colour(5)) }
                 d=(path(fit.curve.iter().map(|m| (x.at(m.tau_s), y.at(m.parts[i].max(f64::MIN_POSITIVE)))))) {}
-            @if let Some(m) = fit.curve.iter().max_by(|a, b| (a.parts[i] / a.deviation).total_cmp(&(b.parts[i] / b.deviation))) {
-                (label(x.at(m.tau_s).clamp(LEFT + 6.0, RIGHT - 14.0), y.at(m.parts[i]) - 6.0, "key", SYMBOLS[i]))
-            }
         }
         path class={ "line " (colour(5)) } d=(path(fit.curve.iter().map(|m| (x.at(m.tau_s), y.at(m.deviation))))) {}
+    }
+}
+
+/// Names of the parts, each where it is farthest from the curve and can still be seen.
+fn symbols(d: &NoiseDocument, x: &Log, y: &Log, (top, bottom): (f64, f64)) -> Markup {
+    let Some(fit) = &d.fit else { return html! {} };
+    let place = |i: usize| {
+        let seen = fit.curve.iter().filter(|m| {
+            let at = y.at(m.parts[i].max(f64::MIN_POSITIVE));
+            (top + 14.0..=bottom - 10.0).contains(&at)
+        });
+        seen.min_by(|a, b| (a.parts[i] / a.deviation).total_cmp(&(b.parts[i] / b.deviation)))
+    };
+    html! {
+        @for i in 0..SYMBOLS.len() {
+            @if let Some(m) = place(i) {
+                (label((x.at(m.tau_s) + 7.0).clamp(LEFT + 6.0, RIGHT - 14.0), y.at(m.parts[i]) - 4.0, "key", SYMBOLS[i]))
+            }
+        }
     }
 }
 
@@ -165,10 +197,13 @@ fn best(d: &NoiseDocument, x: &Log, y: &Log, (top, bottom): (f64, f64)) -> Marku
     html! {
         path class="edge ink" d=(format!("M{} {}V{}", c(at), c(top), c(bottom))) {}
         path class="dot ink" d=(marker(3, at, y.at(best.deviation), 7.0)) {}
+        @let text = format!("best dwell {}", duration(best.tau_s));
+        @if at < (LEFT + RIGHT) / 2.0 { (label(at + 6.0, top + 12.0, "key", &text)) }
+        @else { (label(at - 6.0, top + 12.0, "key end", &text)) }
     }
 }
 
-fn measured(i: usize, curve: &CurveEntry, x: &Log, y: &Log) -> Markup {
+fn measured(i: usize, curve: &CurveEntry, x: &Log, y: &Log, aside: f64) -> Markup {
     if curve.points.len() > MOST_MARKED {
         let line = path(curve.points.iter().map(|p| (x.at(p.tau_s), y.at(p.deviation))));
         return html! { path class={ "line " (colour(i)) } d=(line) {} };
@@ -177,9 +212,9 @@ fn measured(i: usize, curve: &CurveEntry, x: &Log, y: &Log) -> Markup {
         @for p in &curve.points {
             @if let Some([low, high]) = p.band {
                 path class={ "bar " (colour(i)) }
-                    d=(crate::figure::parts::upright(x.at(p.tau_s), y.at(high), y.at(low), 2.5)) {}
+                    d=(crate::figure::parts::upright(x.at(p.tau_s) + aside, y.at(high), y.at(low), 2.5)) {}
             }
-            path class={ "dot " (colour(i)) } d=(marker(i, x.at(p.tau_s), y.at(p.deviation), 3.2)) {}
+            path class={ "dot " (colour(i)) } d=(marker(i, x.at(p.tau_s) + aside, y.at(p.deviation), 3.2)) {}
         }
     }
 }

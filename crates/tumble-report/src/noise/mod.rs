@@ -31,13 +31,37 @@ fn deviation_name(name: &str) -> &'static str {
     }
 }
 
+/// Digits that an interval lets a value have.
+fn digits_of(value: f64, (low, high): (f64, Option<f64>)) -> i32 {
+    match high.map(|h| (h - low) / value) {
+        Some(width) if low > 0.0 && width < 0.05 => 4,
+        Some(_) if low > 0.0 => 3,
+        _ => 2,
+    }
+}
+
 /// `value unit (from low to high)`.
-fn with_interval(value: f64, unit: &str, (low, high): (f64, Option<f64>)) -> String {
-    let high = high.map_or("no bound".to_owned(), |h| significant(h, 3));
+fn with_interval(value: f64, unit: &str, interval: (f64, Option<f64>)) -> String {
+    let (low, high) = interval;
+    let digits = digits_of(value, interval).max(3);
+    let high = high.map_or("no bound".to_owned(), |h| significant(h, digits));
     if value == 0.0 {
         return format!("not seen; at most {high} {unit}");
     }
-    format!("{} {unit} (from {} to {high})", significant(value, 4), significant(low, 3))
+    let value = significant(value, digits_of(value, interval));
+    format!("{value} {unit} (from {} to {high})", significant(low, digits))
+}
+
+/// A unit as printed: `µg/√Hz` for `ug/rtHz`.
+fn printed_unit(ascii: &str) -> String {
+    ascii
+        .replace("rtHz", "√Hz")
+        .replace("rts", "√s")
+        .replace("rth", "√h")
+        .replace("ug", "µg")
+        .replace("m/s2", "m/s²")
+        .replace("m/s3", "m/s³")
+        .replace("sqrt(2) ", "√2·")
 }
 
 /// A time for people.

@@ -3,8 +3,8 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use tumble_io::noise::{CurveEntry, NoiseDocument};
 
-use super::{deviation_name, duration, short_name, stated, with_interval};
-use crate::numbers::{significant, typographic};
+use super::{deviation_name, duration, printed_unit, short_name, stated, with_interval};
+use crate::numbers::{p_value, significant, typographic};
 use crate::sanitize::clean_text;
 
 /// Rows of a table; all points stand in the JSON.
@@ -47,11 +47,11 @@ pub fn noise_page(d: &NoiseDocument) -> String {
                     @if let Some(c) = &d.converter {
                         section {
                             h2 { "Converter" }
-                            p { "Step " (stated(c.step)) " " (unit(d)) ". Rounding alone is white noise of "
-                                (n(c.of_a_reading, 3)) " " (unit(d)) " a reading (step/√12), N = " (n(c.n, 3)) " " (unit(d))
-                                " √s. The noise is " (n(c.noise_in_steps, 3)) " steps a reading"
-                                @if c.dithered { ", which spreads the readings over steps." }
-                                @else { ": too little, and averages follow the steps." } }
+                            p { "Step " (stated(c.step)) " " (unit(d)) ". The noise is " (n(c.noise_in_steps, 3)) " steps a reading"
+                                @if c.dithered { ", which spreads the readings over steps: rounding is white noise of "
+                                    (n(c.of_a_reading, 3)) " " (unit(d)) " a reading (step/√12), N = " (n(c.n, 3)) " " (unit(d))
+                                    "·√s, part of the N above." }
+                                @else { ": too little, averages follow the steps." } }
                         }
                     }
                     @if !d.remarks.is_empty() {
@@ -61,7 +61,10 @@ pub fn noise_page(d: &NoiseDocument) -> String {
                     section {
                         h2 { "Provenance" }
                         dl {
-                            dt { "file" } dd { (clean_text(&d.input.file)) }
+                            dt { "file" } dd { (clean_text(&d.input.file))
+                                @if let Some(column) = &d.input.column { ", column " (clean_text(column)) } }
+                            dt { "rate" } dd { (rate(d)) }
+                            @if d.input.pieces.len() > 1 { dt { "pieces" } dd { (pieces(&d.input.pieces)) } }
                             dt { "SHA-256" } dd .digest { (clean_text(&d.input.sha256)) }
                             dt { "degrees of freedom" } dd { (clean_text(&d.software.edf)) }
                             dt { "software" } dd { (clean_text(&d.software.name)) " " (clean_text(&d.software.version)) }
@@ -105,27 +108,67 @@ fn lead(d: &NoiseDocument) -> String {
     )
 }
 
+/// Where the rate comes from.
+fn rate(d: &NoiseDocument) -> String {
+    let i = &d.input;
+    let hz = typographic(&stated(i.rate_hz));
+    match (&i.time_column, i.jitter) {
+        (Some(column), Some(jitter)) => format!(
+            "{hz} Hz, from column {}; steps scatter by {} %",
+            clean_text(column),
+            n(100.0 * jitter, 2)
+        ),
+        _ => format!("{hz} Hz, as given"),
+    }
+}
+
+/// Lengths of the pieces between gaps.
+fn pieces(pieces: &[u64]) -> String {
+    const SHOWN: usize = 20;
+    let shown: Vec<String> = pieces.iter().take(SHOWN).map(u64::to_string).collect();
+    let more = if pieces.len() > SHOWN { ", …" } else { "" };
+    format!("{}, of {}{more} readings", pieces.len(), shown.join(", "))
+}
+
 fn coefficients(d: &NoiseDocument) -> Markup {
     let Some(fit) = &d.fit else { return html! {} };
     html! {
         section {
             h2 { "Coefficients" }
             div .scroll { table .whole {
-                caption { "Intervals of " (stated(100.0 * fit.level)) " %. χ² " (n(fit.chi_squared, 3)) " with "
-                    (fit.degrees_of_freedom) " degrees of freedom." }
+                caption { "Intervals of " (stated(100.0 * fit.level)) " %. χ² " (n(fit.chi_squared, 3)) ", "
+                    (fit.degrees_of_freedom) " degrees of freedom"
+                    @if let Some(p) = fit.p { ", p " (p_value(p)) }
+                    @if d.unit == "m/s2" { ". Data sheets give the one-sided noise density, n = √2·N: µg/√Hz there are not µg·√s of N" }
+                    "." }
                 thead { tr { th scope="col" { "" } th scope="col" { "Noise" } th scope="col" { "Value" }
                     th scope="col" { "As data sheets write it" } } }
                 tbody { @for e in &fit.coefficients { tr {
                     th scope="row" { (e.symbol) }
                     td { (e.name) }
-                    td { (typographic(&with_interval(e.value, &e.unit, e.interval))) }
+                    td { (sized(e.value, &e.unit, e.interval)) }
                     td { @for s in e.sheet.iter().filter(|_| e.value > 0.0) {
-                        div { (n(s.value, 4)) " " (s.unit) @if !s.meaning.is_empty() { " (" (s.meaning) ")" } }
+                        div { (sized(s.value, &s.unit, s.interval)) @if !s.meaning.is_empty() { ": " (printed_unit(&s.meaning)) } }
                     } }
                 } } }
             } }
         }
     }
+}
+
+/// A size with its interval, numbers and unit as printed.
+fn sized(value: f64, unit: &str, (low, high): (f64, Option<f64>)) -> String {
+    let unit = printed_unit(unit);
+    let numbers = with_interval(value, &unit, (low, high));
+    // Powers of ten stand in single numbers.
+    let words: Vec<String> = numbers
+        .split(' ')
+        .map(|word| {
+            let (number, tail) = word.strip_suffix(')').map_or((word, ""), |number| (number, ")"));
+            typographic(number) + tail
+        })
+        .collect();
+    words.join(" ")
 }
 
 fn table(d: &NoiseDocument, curve: &CurveEntry) -> Markup {

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use tumble_io::noise::{CurveEntry, NoiseDocument};
 
 use super::{deviation_name, duration, short_name, stated, with_interval};
-use crate::numbers::significant;
+use crate::numbers::{p_value, significant};
 use crate::sanitize::clean_text as plain;
 use crate::words::wrapped;
 
@@ -26,17 +26,21 @@ pub fn noise_table(d: &NoiseDocument) -> String {
     }
     coefficients(&mut out, d);
     if let Some(c) = &d.converter {
-        let dither =
-            if c.dithered { "which spreads the readings over steps" } else { "too little" };
-        let text = format!(
-            "step {} {u}; rounding alone is white noise of {} {u} a reading, N = {} {u} rts. The noise is {} steps a \
-             reading, {dither}.",
-            stated(c.step),
-            significant(c.of_a_reading, 3),
-            significant(c.n, 3),
-            significant(c.noise_in_steps, 3),
-            u = d.unit
-        );
+        let step = stated(c.step);
+        let noise = significant(c.noise_in_steps, 3);
+        let text = match c.dithered {
+            true => format!(
+                "step {step} {u}. The noise is {noise} steps a reading, which spreads the readings over steps: rounding is \
+                 white noise of {} {u} a reading (step/sqrt(12)), N = {} {u} rts, part of the N above.",
+                significant(c.of_a_reading, 3),
+                significant(c.n, 3),
+                u = d.unit
+            ),
+            false => format!(
+                "step {step} {u}. The noise is {noise} steps a reading: too little, averages follow the steps.",
+                u = d.unit
+            ),
+        };
         out.push_str(&wrapped("converter  ", &text, 11, WIDTH));
     }
     if let Some(best) = &d.dwell {
@@ -47,7 +51,11 @@ pub fn noise_table(d: &NoiseDocument) -> String {
             significant(best.least, 3),
             duration(best.least_tau_s),
             // "the shortest …" and "the deviation still …" both read on.
-            if best.still_falling { format!("open: {}", best.why) } else { best.why.clone() },
+            if best.why.starts_with("the shortest") {
+                best.why.clone()
+            } else {
+                format!("open: {}", best.why)
+            },
             u = d.unit
         );
         out.push_str(&wrapped("best dwell ", &text, 11, WIDTH));
@@ -61,7 +69,14 @@ pub fn noise_table(d: &NoiseDocument) -> String {
 fn head(out: &mut String, d: &NoiseDocument) {
     let i = &d.input;
     let length = i.readings as f64 / i.rate_hz;
-    let from = if i.rate_from == "times" { "from the column t_s" } else { "as given" };
+    let from = match &i.time_column {
+        Some(column) => {
+            let column = crate::words::shortened(&plain(column), 30);
+            // A file without names has `column 1`.
+            format!("from column {}", column.strip_prefix("column ").unwrap_or(&column))
+        }
+        None => "as given".to_owned(),
+    };
     let text = format!(
         "{}: {} readings at {} Hz ({from}), {}",
         short_name(&i.file),
@@ -81,7 +96,10 @@ fn head(out: &mut String, d: &NoiseDocument) {
     out.push_str(&wrapped("readings   ", &text, 11, WIDTH));
     let text = match &d.scale {
         Some(s) => format!("{} m/s2 a unit, {}", stated(s.m_s2_per_unit), plain(&s.source)),
-        None => format!("none: results are in {}; --scale turns them into m/s2", d.unit),
+        None => format!(
+            "none: results are in {}; --scale turns them into m/s2",
+            if d.unit == "LSB" { "LSB" } else { "the unit of the readings" }
+        ),
     };
     out.push_str(&wrapped("scale      ", &text, 11, WIDTH));
 }
@@ -193,10 +211,11 @@ fn coefficients(out: &mut String, d: &NoiseDocument) {
     let Some(fit) = &d.fit else { return };
     let _ = writeln!(
         out,
-        "coefficients, intervals of {} % (chi2 {} with {} degrees of freedom)",
+        "coefficients, intervals of {} % (chi2 {}, {} degrees of freedom{})",
         stated(100.0 * fit.level),
         significant(fit.chi_squared, 3),
-        fit.degrees_of_freedom
+        fit.degrees_of_freedom,
+        fit.p.map_or(String::new(), |p| format!(", p {}", p_value(p)))
     );
     for c in &fit.coefficients {
         let value = with_interval(c.value, &c.unit, c.interval);
@@ -209,9 +228,10 @@ fn coefficients(out: &mut String, d: &NoiseDocument) {
         for s in c.sheet.iter().filter(|_| c.value > 0.0) {
             let meaning =
                 if s.meaning.is_empty() { String::new() } else { format!(": {}", s.meaning) };
-            let text = format!("= {} {}{meaning}", significant(s.value, 4), s.unit);
+            let text = format!("= {}{meaning}", with_interval(s.value, &s.unit, s.interval));
             out.push_str(&wrapped("       ", &text, 9, WIDTH));
         }
     }
-    out.push('\n');
+    // Three roots that plain characters do not have.
+    out.push_str("  rts, rth, rtHz: the square root of s, h, Hz\n\n");
 }

@@ -1,11 +1,13 @@
 //! `tumble noise`
 
+use std::path::Path;
+
 use tumble_core::noise::{Deviation, Spacing, Times};
-use tumble_io::noise::{NoiseDocument, NoiseFailure, NoiseSettings, Scale, analyse};
+use tumble_io::noise::{NoiseDocument, NoiseFailure, NoiseSettings, Scale, TimeUnit, analyse};
 use tumble_io::passport::Passport;
 use tumble_io::{Catalogue, Existing, OutputError, OutputFolder, Proof, Written, compensator};
 
-use crate::cli::{DeviationArg, NoiseArgs, TausArg};
+use crate::cli::{DeviationArg, NoiseArgs, TausArg, TimeUnitArg};
 use crate::exit::{Exit, complain, deliver};
 use crate::interrupt;
 use crate::progress::Progress;
@@ -19,7 +21,9 @@ pub(crate) fn run(args: &NoiseArgs) -> Exit {
         }
     };
     let progress = Progress::new(args.quiet);
-    let found = analyse(&args.file, &settings, &progress);
+    // As other programs do; the path is that of Unix.
+    let file = if args.file.as_os_str() == "-" { Path::new("/dev/stdin") } else { &args.file };
+    let found = analyse(file, &settings, &progress);
     progress.clear();
     let document = match found {
         Ok(document) => document,
@@ -82,6 +86,14 @@ fn settings(args: &NoiseArgs) -> Result<NoiseSettings, String> {
     Ok(NoiseSettings {
         column: args.column.clone(),
         rate_hz: args.rate,
+        time: args.time.clone(),
+        time_unit: args.time_unit.map(|unit| match unit {
+            TimeUnitArg::S => TimeUnit::Seconds,
+            TimeUnitArg::Ms => TimeUnit::Milliseconds,
+            TimeUnitArg::Us => TimeUnit::Microseconds,
+            TimeUnitArg::Ns => TimeUnit::Nanoseconds,
+            TimeUnitArg::Date => TimeUnit::Date,
+        }),
         scale: scale(args)?,
         deviations,
         times,
@@ -106,6 +118,11 @@ fn scale(args: &NoiseArgs) -> Result<Option<Scale>, String> {
         }));
     }
     let Some(model) = &args.sensor else { return Ok(None) };
+    of_type(model, args.mode.as_deref()).map(Some)
+}
+
+/// The nominal scale of a type of the catalogue.
+fn of_type(model: &str, mode: Option<&str>) -> Result<Scale, String> {
     let catalogue = Catalogue::builtin();
     let Some(entry) = catalogue.find(model) else {
         return Err(format!(
@@ -116,33 +133,49 @@ fn scale(args: &NoiseArgs) -> Result<Option<Scale>, String> {
             }
         ));
     };
-    let digital: Vec<_> = entry
+    let digital: Vec<(&str, f64)> = entry
         .modes()
         .iter()
         .filter_map(|m| m.nominal_scale_m_s2_per_lsb().map(|s| (m.name.as_str(), s)))
         .collect();
-    let named = |wanted: &String| digital.iter().find(|(name, _)| name == wanted);
-    let chosen = match (&args.mode, &digital[..]) {
-        (Some(mode), _) => named(mode),
-        (None, [one]) => Some(one),
-        _ => None,
-    };
-    let names: Vec<String> = digital.iter().map(|(name, _)| format!("'{name}'")).collect();
-    match chosen {
-        Some((name, m_s2_per_unit)) => Ok(Some(Scale {
-            m_s2_per_unit: *m_s2_per_unit,
-            source: format!("nominal scale of {} at {name}", entry.model()),
-        })),
-        None if digital.is_empty() => Err(format!(
+    if digital.is_empty() {
+        return Err(format!(
             "{} is analogue: its scale depends on the converter; give --scale, m/s² per LSB",
             entry.model()
-        )),
-        None => Err(format!(
-            "say which mode of {}: --mode {}",
-            entry.model(),
-            names.join(" or --mode ")
-        )),
+        ));
     }
+    let chosen = match (mode, &digital[..]) {
+        (Some(mode), _) => named_mode(mode, &digital),
+        (None, [one]) => Some(*one),
+        (None, _) => None,
+    };
+    let Some((name, m_s2_per_unit)) = chosen else {
+        let names: Vec<String> =
+            digital.iter().map(|(name, _)| format!("--mode '{name}'")).collect();
+        let what = match mode {
+            Some(mode) => format!("{} has no one mode `{mode}`; give", entry.model()),
+            None => format!("say which mode of {}:", entry.model()),
+        };
+        return Err(format!("{what} {}", names.join(" or ")));
+    };
+    Ok(Scale { m_s2_per_unit, source: format!("nominal scale of {} at {name}", entry.model()) })
+}
+
+/// The mode of that name, or the only one that begins so, whatever the case, blanks and the sign of `±`.
+fn named_mode<'m>(wanted: &str, modes: &[(&'m str, f64)]) -> Option<(&'m str, f64)> {
+    let plain = |text: &str| -> String {
+        let text = text.to_lowercase().replace("+-", "");
+        text.chars().filter(|c| !c.is_whitespace() && !matches!(c, '±' | '+')).collect()
+    };
+    let wanted = plain(wanted);
+    if wanted.is_empty() {
+        return None;
+    }
+    if let Some(exact) = modes.iter().find(|(name, _)| plain(name) == wanted) {
+        return Some(*exact);
+    }
+    let mut begin = modes.iter().filter(|(name, _)| plain(name).starts_with(&wanted));
+    begin.next().filter(|_| begin.next().is_none()).copied()
 }
 
 fn write(args: &NoiseArgs, document: &NoiseDocument, json: String) -> Result<(), OutputError> {
