@@ -33,6 +33,36 @@ impl Cholesky {
         Some(Self { lower: l })
     }
 
+    /// `L y`.
+    pub fn product(&self, y: &[f64]) -> Vec<f64> {
+        (0..y.len()).map(|i| (0..=i).map(|k| self.lower[(i, k)] * y[k]).sum()).collect()
+    }
+
+    /// `ln |C|`.
+    pub fn log_determinant(&self) -> f64 {
+        2.0 * (0..self.lower.rows()).map(|i| self.lower[(i, i)].ln()).sum::<f64>()
+    }
+
+    /// `L⁻¹ D L⁻ᵀ` of a symmetric matrix.
+    pub fn both_sides(&self, d: &Matrix) -> Matrix {
+        let n = d.rows();
+        let mut half = Matrix::zeros(n, n);
+        let mut out = Matrix::zeros(n, n);
+        for j in 0..n {
+            let column: Vec<f64> = (0..n).map(|i| d[(i, j)]).collect();
+            for (i, x) in self.solve_lower(&column).into_iter().enumerate() {
+                half[(j, i)] = x;
+            }
+        }
+        for j in 0..n {
+            let column: Vec<f64> = (0..n).map(|i| half[(i, j)]).collect();
+            for (i, x) in self.solve_lower(&column).into_iter().enumerate() {
+                out[(i, j)] = x;
+            }
+        }
+        out
+    }
+
     /// `L⁻¹ y`.
     pub fn solve_lower(&self, y: &[f64]) -> Vec<f64> {
         let mut out = y.to_vec();

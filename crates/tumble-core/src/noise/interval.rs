@@ -1,6 +1,7 @@
 //! Interval of a coefficient: the sizes at which what was found is no surprise.
 
 use super::covariance::AllanCovariance;
+use super::resampling::{DRAWS, Draws};
 use super::subset::{COUNT, Problem};
 use super::{Coefficients, Variance};
 use crate::linalg::Matrix;
@@ -31,6 +32,9 @@ pub(super) struct Trial<'a> {
     pub weights: Vec<f64>,
     /// See above; may be negative.
     pub let_in: f64,
+    /// EXPLORE
+    pub redo: usize,
+    pub likely: bool,
 }
 
 impl Trial<'_> {
@@ -123,6 +127,56 @@ impl Trial<'_> {
             return Some(normal_quantile(p));
         }
         Some((chi_squared_quantile(p, dof)? - dof) / (2.0 * dof).sqrt())
+    }
+
+    /// Probabilities, in records under the model with the coefficient at a size, of so small and of so large a value.
+    pub fn chances(&self, draws: &Draws, size: f64, rounds: usize) -> Option<[f64; 2]> {
+        let (points, i) = (self.variances.len(), self.which);
+        let mut model = self.found;
+        model[i] = size;
+        let mut covariance = self.covariance(model);
+        let mut problem = Problem::new(self.variances, &covariance)?;
+        let mut held = problem.best(points, Some((i, size)))?;
+        for _ in 1..rounds {
+            covariance = self.covariance(held.values);
+            problem = Problem::new(self.variances, &covariance)?;
+            held = problem.best(points, Some((i, size)))?;
+        }
+        if self.likely {
+            held.values = super::likelihood::most_likely(self.variances, self.family, held.values, Some(i))?;
+            covariance = self.covariance(held.values);
+            problem = Problem::new(self.variances, &covariance)?;
+        }
+        if std::env::var_os("SHOW").is_some() && i == 4 { eprintln!("{:?} root {:.3}", held.values.map(f64::sqrt), problem.again().root(&self.variances.iter().map(|v| v.variance).collect::<Vec<_>>(), i, size)); }
+        let mut again = problem.again();
+        let measured: Vec<f64> = self.variances.iter().map(|v| v.variance).collect();
+        let root = again.root(&measured, i, size);
+        let model = Coefficients::from_order(held.values);
+        let covariance = self.covariance(held.values);
+        let others = draws.variances(self.variances, &model, &covariance)?;
+        let (mut below, mut above) = (1.0, 1.0);
+        for y in others {
+            let other = if self.redo > 0 { self.redone(&y, held.values, size)? } else { again.root(&y, i, size) };
+            below += f64::from(u8::from(other <= root));
+            above += f64::from(u8::from(other >= root));
+        }
+        let of = DRAWS as f64 + 1.0;
+        Some([below / of, above / of])
+    }
+
+    /// EXPLORE: root with re-estimated covariance
+    fn redone(&self, y: &[f64], mut model: [f64; COUNT], size: f64) -> Option<f64> {
+        let i = self.which;
+        let vs: Vec<Variance> = self.variances.iter().zip(y).map(|(v, y)| Variance { variance: *y, ..*v }).collect();
+        let mut problem = Problem::new(&vs, &self.covariance(model))?;
+        for _ in 0..self.redo {
+            model = problem.best(vs.len(), Some((i, size)))?.values;
+            problem = Problem::new(&vs, &self.covariance(model))?;
+        }
+        let held = problem.best(vs.len(), Some((i, size)))?;
+        let free = problem.best(vs.len(), None)?;
+        let g = (held.chi_squared - free.chi_squared).max(0.0).sqrt();
+        Some(if free.values[i] >= size { g } else { -g })
     }
 
     fn covariance(&self, model: [f64; COUNT]) -> Matrix {

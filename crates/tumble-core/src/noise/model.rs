@@ -128,7 +128,7 @@ pub fn fit(variances: &[Variance], interval_s: f64, level: f64) -> Option<NoiseF
             Some((s, weights)) => {
                 let (found, let_in) = (best.values, s.values[which]);
                 let family = &family;
-                let trial = Trial { variances, family, found, which, tail, weights, let_in };
+                let trial = Trial { variances, family, found, which, tail, weights, let_in, redo: 0, likely: false };
                 trial.interval(s.uncertainties[which])
             }
             None => [0.0, f64::INFINITY],
@@ -147,6 +147,32 @@ pub fn fit(variances: &[Variance], interval_s: f64, level: f64) -> Option<NoiseF
         discrepancy,
         degrees_of_freedom: dof,
     })
+}
+
+/// EXPLORE
+#[doc(hidden)]
+#[must_use]
+pub fn explore(variances: &[Variance], interval_s: f64, truth: [f64; 5], rounds_n: usize) -> Option<[[f64; 2]; 5]> {
+    let n = variances.len();
+    let mut c = Matrix::zeros(n, n);
+    for (i, v) in variances.iter().enumerate() {
+        c[(i, i)] = v.variance.powi(2) * 2.0 * v.factor as f64 / v.terms as f64;
+    }
+    let first = Problem::new(variances, &c)?.best(n, None)?;
+    let mut family = AllanCovariance::of(variances, interval_s);
+    let (mut problem, mut best) = rounds(variances, &family, &first)?;
+    let dof = n.saturating_sub(best.set.iter().filter(|s| **s).count());
+    if chi_squared_p_value(best.chi_squared, dof as f64).is_some_and(|p| p < NO_CHANCE) {
+        family = family.clone().with_discrepancy(found_discrepancy(variances, &family, &first));
+        (problem, best) = rounds(variances, &family, &first)?;
+    }
+    let _ = problem;
+    let draws = super::resampling::Draws::of(n);
+    Some(core::array::from_fn(|which| {
+        if truth[which] == 0.0 { return [1.0; 2]; }
+        let trial = Trial { variances, family: &family, found: best.values, which, tail: 0.025, weights: vec![], let_in: 0.0, redo: rounds_n / 10 % 10, likely: rounds_n / 100 > 0 };
+        trial.chances(&draws, truth[which] * truth[which], rounds_n % 10).unwrap_or([9.0; 2])
+    }))
 }
 
 /// The fit and its covariance brought together, from a first fit on.
