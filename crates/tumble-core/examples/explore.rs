@@ -62,7 +62,7 @@ fn main() {
                     if rounds == 0 {
                         let f = tumble_core::noise::fit(&v, 0.02, 0.95).unwrap();
                         core::array::from_fn(|i| { let [l, h] = f.coefficients[i].interval; [if truth[i] > h { 0.0 } else { 1.0 }, if truth[i] < l { 0.0 } else { 1.0 }] })
-                    } else { explore(&v, 0.02, truth, rounds).unwrap() }
+                    } else { explore(&v, 0.02, truth).unwrap() }
                 }).collect::<Vec<_>>()
             })).collect();
             h.into_iter().map(|h| h.join().unwrap()).collect()

@@ -43,21 +43,17 @@ impl Cholesky {
         2.0 * (0..self.lower.rows()).map(|i| self.lower[(i, i)].ln()).sum::<f64>()
     }
 
-    /// `L⁻¹ D L⁻ᵀ` of a symmetric matrix.
-    pub fn both_sides(&self, d: &Matrix) -> Matrix {
+    /// `L⁻¹ D L⁻ᵀ` of a symmetric matrix, row by row.
+    pub fn both_sides(&self, d: &Matrix) -> Vec<f64> {
         let n = d.rows();
-        let mut half = Matrix::zeros(n, n);
-        let mut out = Matrix::zeros(n, n);
+        let row = |i: usize| (0..n).map(|j| d[(i, j)]).collect::<Vec<_>>();
+        // Rows of D L⁻ᵀ; its columns are those of the transposed.
+        let half: Vec<Vec<f64>> = (0..n).map(|i| self.solve_lower(&row(i))).collect();
+        let mut out = vec![0.0; n * n];
         for j in 0..n {
-            let column: Vec<f64> = (0..n).map(|i| d[(i, j)]).collect();
+            let column: Vec<f64> = half.iter().map(|h| h[j]).collect();
             for (i, x) in self.solve_lower(&column).into_iter().enumerate() {
-                half[(j, i)] = x;
-            }
-        }
-        for j in 0..n {
-            let column: Vec<f64> = (0..n).map(|i| half[(i, j)]).collect();
-            for (i, x) in self.solve_lower(&column).into_iter().enumerate() {
-                out[(i, j)] = x;
+                out[i * n + j] = x;
             }
         }
         out

@@ -1,196 +1,148 @@
 //! Interval of a coefficient: the sizes at which what was found is no surprise.
 
 use super::covariance::AllanCovariance;
+use super::likelihood::{Scoring, simplest};
 use super::resampling::{DRAWS, Draws};
 use super::subset::{COUNT, Problem};
 use super::{Coefficients, Variance};
 use crate::linalg::Matrix;
-use crate::stats::{chi_squared_quantile, normal_quantile};
+use crate::stats::normal_quantile;
 
-/// Rounds in which the other coefficients and the covariance are brought together at a size.
-const ROUNDS: usize = 2;
-/// Halvings of the logarithm of a bound: 10⁻⁴ of twelve decades.
-const HALVINGS: usize = 24;
+/// What another coefficient must add to twice the logarithm of the likelihood to stand in the model that is drawn from.
+/// With less, what is not there widens the intervals of the others; with more, what is there but weak is missed.
+const WORTH: f64 = 1.0;
 /// Sizes that are tried, about what was found or what is just seen.
 const FARTHEST: f64 = 1e6;
-/// Degrees of freedom from which the normal distribution serves.
-const MANY: f64 = 1e4;
-/// Fewest that are thought of.
-const FEW: f64 = 0.5;
+/// First step from what was found, in the logarithm of the squared coefficient, and its growth.
+const STEP: f64 = 0.1;
+const GROWTH: f64 = 2.0;
+/// Trials of a bound, and where it is known well enough: in the logarithm, and in the normal quantile of the probability.
+const TRIALS: usize = 12;
+const FINE: f64 = 2e-3;
+const NEAR: f64 = 0.01;
 
 /// What the sizes are tried on.
 pub(super) struct Trial<'a> {
     pub variances: &'a [Variance],
     pub family: &'a AllanCovariance,
+    pub draws: &'a Draws,
     /// Squared coefficients that were found.
     pub found: [f64; COUNT],
     /// The coefficient in question.
     pub which: usize,
     /// Probability of each tail.
     pub tail: f64,
-    /// How each variance moves the coefficient in the set that was found (with it), and what that set gives for it.
-    pub weights: Vec<f64>,
-    /// See above; may be negative.
-    pub let_in: f64,
-    /// EXPLORE
-    pub redo: usize,
-    pub likely: bool,
+}
+
+/// End of an interval.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum End {
+    Low,
+    High,
 }
 
 impl Trial<'_> {
     /// The interval of the squared coefficient; `seen`, an uncertainty of it, sets the scale where nothing was found.
     ///
-    /// **Model** at a true size `c` the other coefficients are fitted anew, none negative; the covariance is that of the
-    /// whole model. `T`, the growth of `χ²` against the best fit under that covariance, is the square of a standardized
-    /// deviation of what was found from `c`. Its quantiles are those of a `χ²_ν` of the same skewness: of the
-    /// coefficient's own noise, `2 v²/(c u³)` with `v` the part of the variance `u²` that comes with `c`.
-    ///
-    /// Coefficients that are zero and cannot be found negative take their part from the others; sizes that are no surprise
-    /// to the set that was found, with its weights, are therefore in the interval as well.
+    /// **Model** at a true size `c` the other coefficients take their most likely values, without those that add nothing.
+    /// From this model other records' variances are drawn; each gives the others anew and, with the covariance of what it
+    /// gives, the root of the growth of `χ²` between the best fit and the best with `c` held, with its sign. The interval
+    /// holds the sizes at which the record's own root is neither among the smallest nor the largest.
     pub fn interval(&self, seen: f64) -> [f64; 2] {
         let found = self.found[self.which];
-        let scale = if found > 0.0 { found } else { seen };
-        let low = match found > 0.0 && !self.is_likely(0.0) {
-            true => self.bound(scale / FARTHEST, found),
-            false => 0.0,
+        let center = if found > 0.0 { found } else { seen };
+        let low = if found > 0.0 && self.surplus(0.0, End::Low).is_some_and(|s| s < 0.0) {
+            self.bound(center, End::Low)
+        } else {
+            0.0
         };
-        [low, self.bound(scale * FARTHEST, found.max(scale / FARTHEST))]
+        [low, self.bound(center, End::High)]
     }
 
-    /// Between a size that is a surprise and one that is none.
-    fn bound(&self, surprising: f64, likely: f64) -> f64 {
-        if self.is_likely(surprising) {
-            return if surprising > likely { f64::INFINITY } else { 0.0 };
-        }
-        let (mut out, mut within) = (surprising.ln(), likely.ln());
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (out + within);
-            if self.is_likely(middle.exp()) {
-                within = middle;
+    /// The size at which the surplus changes its sign, outwards from the centre.
+    fn bound(&self, center: f64, end: End) -> f64 {
+        let (sign, none) = match end {
+            End::Low => (-1.0, 0.0),
+            End::High => (1.0, f64::INFINITY),
+        };
+        let surplus = |at: f64| self.surplus(center * at.exp(), end);
+        let (mut within, mut step) = ((0.0, None), STEP);
+        // In the logarithm from the centre.
+        let mut out = loop {
+            let at: f64 = within.0 + sign * step;
+            if at.abs() > FARTHEST.ln() {
+                return none;
+            }
+            match surplus(at) {
+                Some(s) if s < 0.0 => break (at, s),
+                found => within = (at, found),
+            }
+            step *= GROWTH;
+        };
+        let mut within = (within.0, within.1.unwrap_or(-normal_quantile(self.tail)));
+        // Regula falsi, with the weight of an end halved that stays twice.
+        let mut stayed = 0;
+        for _ in 0..TRIALS {
+            let at = within.0 + (out.0 - within.0) * within.1 / (within.1 - out.1);
+            if (out.0 - within.0).abs() < FINE {
+                return center * at.exp();
+            }
+            let Some(s) = surplus(at) else { return none };
+            if s.abs() < NEAR {
+                return center * at.exp();
+            }
+            if s < 0.0 {
+                out = (at, s);
+                stayed = if stayed < 0 { stayed - 1 } else { -1 };
+                within.1 *= if stayed < -1 { 0.5 } else { 1.0 };
             } else {
-                out = middle;
+                within = (at, s);
+                stayed = if stayed > 0 { stayed + 1 } else { 1 };
+                out.1 *= if stayed > 1 { 0.5 } else { 1.0 };
             }
         }
-        (0.5 * (out + within)).exp()
+        center * (0.5 * (within.0 + out.0)).exp()
     }
 
-    /// Whether what was found is no surprise at a true size.
-    fn is_likely(&self, size: f64) -> bool {
-        let little = |s: Option<f64>| s.is_some_and(|s| s <= 1.0);
-        little(self.surprise(size)) || little(self.surprise_of_set(size))
+    /// How far the probability of so small (at the upper end) or so large a root is above the tail, in normal quantiles.
+    fn surplus(&self, size: f64, end: End) -> Option<f64> {
+        let [small, large] = self.chances(size)?;
+        let p = if end == End::Low { large } else { small };
+        // Of all draws: one would have an infinite quantile.
+        let p = p.min(1.0 - 0.5 / DRAWS as f64);
+        Some(normal_quantile(p) - normal_quantile(self.tail))
     }
 
-    /// The same for the set that was found alone.
-    fn surprise_of_set(&self, size: f64) -> Option<f64> {
-        let mut model = self.found;
-        model[self.which] = size;
-        let p = if self.let_in > size { 1.0 - self.tail } else { self.tail };
-        let u2 = variance_of(&self.weights, &self.covariance(model));
-        let z = self.quantile(&self.weights, model, p)?;
-        Some((self.let_in - size).powi(2) / (u2 * z * z))
-    }
-
-    /// `T` over the square of its quantile.
-    fn surprise(&self, size: f64) -> Option<f64> {
-        let (points, i) = (self.variances.len(), self.which);
-        let mut model = self.found;
-        model[i] = size;
-        let mut problem = Problem::new(self.variances, &self.covariance(model))?;
-        let mut held = problem.best(points, Some((i, size)))?;
-        for _ in 1..ROUNDS {
-            model = held.values;
-            problem = Problem::new(self.variances, &self.covariance(model))?;
-            held = problem.best(points, Some((i, size)))?;
-        }
-        let free = problem.best(points, None)?;
-        let growth = (held.chi_squared - free.chi_squared).max(0.0);
-        let mut set = held.set;
-        set[i] = true;
-        let p = if free.values[i] > size { 1.0 - self.tail } else { self.tail };
-        let z = self.quantile(&problem.weights(set, i)?, held.values, p)?;
-        Some(growth / (z * z))
-    }
-
-    /// Quantile of the standardized deviation.
-    fn quantile(&self, w: &[f64], model: [f64; COUNT], p: f64) -> Option<f64> {
+    /// Probabilities of a root as small, and of one as large, as the record's own at a true size.
+    pub fn chances(&self, size: f64) -> Option<[f64; 2]> {
         let i = self.which;
-        let all = variance_of(w, &self.covariance(model));
-        let mut without = model;
-        without[i] = 0.0;
-        let own = (all - variance_of(w, &self.covariance(without))).max(0.0);
-        let skewness = match model[i] > 0.0 {
-            true => 2.0 * own * own / (model[i] * all.powf(1.5)),
-            false => 0.0,
+        let mut start = self.found;
+        start[i] = size;
+        let problem = Problem::new(self.variances, &self.covariance(start))?;
+        let start = problem.best(self.variances.len(), Some((i, size)))?.values;
+        let held = core::array::from_fn(|j| j == i);
+        let model = simplest(self.variances, self.family, start, held, WORTH)?;
+        let scoring = Scoring::about(self.variances, self.family, model, held)?;
+        let mut record = self.variances.to_vec();
+        let mut root = |measured: &[f64]| {
+            let own = self.covariance(scoring.step(measured));
+            record.iter_mut().zip(measured).for_each(|(v, y)| v.variance = *y);
+            Some(Problem::new(&record, &own)?.root(i, size))
         };
-        let dof = (8.0 / (skewness * skewness)).max(FEW);
-        if dof >= MANY {
-            return Some(normal_quantile(p));
-        }
-        Some((chi_squared_quantile(p, dof)? - dof) / (2.0 * dof).sqrt())
-    }
-
-    /// Probabilities, in records under the model with the coefficient at a size, of so small and of so large a value.
-    pub fn chances(&self, draws: &Draws, size: f64, rounds: usize) -> Option<[f64; 2]> {
-        let (points, i) = (self.variances.len(), self.which);
-        let mut model = self.found;
-        model[i] = size;
-        let mut covariance = self.covariance(model);
-        let mut problem = Problem::new(self.variances, &covariance)?;
-        let mut held = problem.best(points, Some((i, size)))?;
-        for _ in 1..rounds {
-            covariance = self.covariance(held.values);
-            problem = Problem::new(self.variances, &covariance)?;
-            held = problem.best(points, Some((i, size)))?;
-        }
-        if self.likely {
-            held.values = super::likelihood::most_likely(self.variances, self.family, held.values, Some(i))?;
-            covariance = self.covariance(held.values);
-            problem = Problem::new(self.variances, &covariance)?;
-        }
-        if std::env::var_os("SHOW").is_some() && i == 4 { eprintln!("{:?} root {:.3}", held.values.map(f64::sqrt), problem.again().root(&self.variances.iter().map(|v| v.variance).collect::<Vec<_>>(), i, size)); }
-        let mut again = problem.again();
         let measured: Vec<f64> = self.variances.iter().map(|v| v.variance).collect();
-        let root = again.root(&measured, i, size);
-        let model = Coefficients::from_order(held.values);
-        let covariance = self.covariance(held.values);
-        let others = draws.variances(self.variances, &model, &covariance)?;
-        let (mut below, mut above) = (1.0, 1.0);
-        for y in others {
-            let other = if self.redo > 0 { self.redone(&y, held.values, size)? } else { again.root(&y, i, size) };
-            below += f64::from(u8::from(other <= root));
-            above += f64::from(u8::from(other >= root));
+        let own = root(&measured)?;
+        let (mut small, mut large) = (1.0, 1.0);
+        let covariance = self.covariance(model);
+        let model = Coefficients::from_order(model);
+        for drawn in self.draws.variances(self.variances, &model, &covariance)? {
+            let other = root(&drawn)?;
+            small += f64::from(u8::from(other <= own));
+            large += f64::from(u8::from(other >= own));
         }
-        let of = DRAWS as f64 + 1.0;
-        Some([below / of, above / of])
-    }
-
-    /// EXPLORE: root with re-estimated covariance
-    fn redone(&self, y: &[f64], mut model: [f64; COUNT], size: f64) -> Option<f64> {
-        let i = self.which;
-        let vs: Vec<Variance> = self.variances.iter().zip(y).map(|(v, y)| Variance { variance: *y, ..*v }).collect();
-        let mut problem = Problem::new(&vs, &self.covariance(model))?;
-        for _ in 0..self.redo {
-            model = problem.best(vs.len(), Some((i, size)))?.values;
-            problem = Problem::new(&vs, &self.covariance(model))?;
-        }
-        let held = problem.best(vs.len(), Some((i, size)))?;
-        let free = problem.best(vs.len(), None)?;
-        let g = (held.chi_squared - free.chi_squared).max(0.0).sqrt();
-        Some(if free.values[i] >= size { g } else { -g })
+        Some([small, large].map(|n| n / (DRAWS + 1) as f64))
     }
 
     fn covariance(&self, model: [f64; COUNT]) -> Matrix {
         self.family.at(&Coefficients::from_order(model))
     }
-}
-
-/// `wᵀ C w`.
-fn variance_of(w: &[f64], c: &Matrix) -> f64 {
-    let mut sum = 0.0;
-    for a in 0..w.len() {
-        for b in 0..w.len() {
-            sum += w[a] * w[b] * c[(a, b)];
-        }
-    }
-    sum.max(f64::MIN_POSITIVE)
 }

@@ -18,6 +18,7 @@ mod interval;
 mod kind;
 mod likelihood;
 mod model;
+mod nonnegative;
 mod octave;
 mod record;
 mod resampling;

@@ -3,6 +3,7 @@
 use super::Variance;
 use super::covariance::AllanCovariance;
 use super::interval::Trial;
+use super::resampling::Draws;
 use super::subset::{Problem, Subset};
 use crate::linalg::Matrix;
 use crate::stats::chi_squared_p_value;
@@ -117,18 +118,17 @@ pub fn fit(variances: &[Variance], interval_s: f64, level: f64) -> Option<NoiseF
         family = family.with_discrepancy(discrepancy);
         (problem, best) = rounds(variances, &family, &first)?;
     }
+    let draws = Draws::of(n);
     let coefficients = core::array::from_fn(|which| {
         let square = best.values[which];
         let mut set = best.set;
         set[which] = true;
         // Of a coefficient that was left out: what it would have been known to.
         let tail = 0.5 * (1.0 - level);
-        let let_in = problem.fit(n, set, None).zip(problem.weights(set, which));
-        let interval = match let_in {
-            Some((s, weights)) => {
-                let (found, let_in) = (best.values, s.values[which]);
-                let family = &family;
-                let trial = Trial { variances, family, found, which, tail, weights, let_in, redo: 0, likely: false };
+        let interval = match problem.fit(n, set, None) {
+            Some(s) => {
+                let (found, family, draws) = (best.values, &family, &draws);
+                let trial = Trial { variances, family, draws, found, which, tail };
                 trial.interval(s.uncertainties[which])
             }
             None => [0.0, f64::INFINITY],
@@ -152,7 +152,7 @@ pub fn fit(variances: &[Variance], interval_s: f64, level: f64) -> Option<NoiseF
 /// EXPLORE
 #[doc(hidden)]
 #[must_use]
-pub fn explore(variances: &[Variance], interval_s: f64, truth: [f64; 5], rounds_n: usize) -> Option<[[f64; 2]; 5]> {
+pub fn explore(variances: &[Variance], interval_s: f64, truth: [f64; 5]) -> Option<[[f64; 2]; 5]> {
     let n = variances.len();
     let mut c = Matrix::zeros(n, n);
     for (i, v) in variances.iter().enumerate() {
@@ -170,8 +170,8 @@ pub fn explore(variances: &[Variance], interval_s: f64, truth: [f64; 5], rounds_
     let draws = super::resampling::Draws::of(n);
     Some(core::array::from_fn(|which| {
         if truth[which] == 0.0 { return [1.0; 2]; }
-        let trial = Trial { variances, family: &family, found: best.values, which, tail: 0.025, weights: vec![], let_in: 0.0, redo: rounds_n / 10 % 10, likely: rounds_n / 100 > 0 };
-        trial.chances(&draws, truth[which] * truth[which], rounds_n % 10).unwrap_or([9.0; 2])
+        let trial = Trial { variances, family: &family, draws: &draws, found: best.values, which, tail: 0.025 };
+        trial.chances(truth[which] * truth[which]).unwrap_or([9.0; 2])
     }))
 }
 
