@@ -13,13 +13,16 @@ use crate::stats::normal_quantile;
 const WORTH: f64 = 1.0;
 /// Sizes that are tried, about what was found or what is just seen.
 const FARTHEST: f64 = 1e6;
-/// First step from what was found, in the logarithm of the squared coefficient, and its growth.
-const STEP: f64 = 0.1;
-const GROWTH: f64 = 2.0;
-/// Trials of a bound, and where it is known well enough: in the logarithm, and in the normal quantile of the probability.
-const TRIALS: usize = 12;
-const FINE: f64 = 2e-3;
-const NEAR: f64 = 0.01;
+/// Growth of the step from what was found, and the least first one, in the logarithm of the squared coefficient.
+const GROWTH: f64 = 1.5;
+const NARROW: f64 = 1e-3;
+/// Trials of a bound; where it is near enough for a last step (in the normal quantile of the probability); and where few
+/// draws can say no more (in its distance from what was found).
+const TRIALS: usize = 8;
+const NEAR: f64 = 0.05;
+const FINE: f64 = 0.02;
+/// Draws that find a bound roughly.
+const FEW: usize = 199;
 
 /// What the sizes are tried on.
 pub(super) struct Trial<'a> {
@@ -51,70 +54,95 @@ impl Trial<'_> {
     pub fn interval(&self, seen: f64) -> [f64; 2] {
         let found = self.found[self.which];
         let center = if found > 0.0 { found } else { seen };
-        let low = if found > 0.0 && self.surplus(0.0, End::Low).is_some_and(|s| s < 0.0) {
-            self.bound(center, End::Low)
-        } else {
-            0.0
+        // Where no model is likely without it, none can be drawn from.
+        let zero_surprises = || self.surplus(0.0, End::Low, DRAWS).is_none_or(|s| s < 0.0);
+        let low = match found > 0.0 && zero_surprises() {
+            true => self.bound(center, seen, End::Low),
+            false => 0.0,
         };
-        [low, self.bound(center, End::High)]
+        [low, self.bound(center, seen, End::High)]
     }
 
-    /// The size at which the surplus changes its sign, outwards from the centre.
-    fn bound(&self, center: f64, end: End) -> f64 {
-        let (sign, none) = match end {
+    /// Whether the interval holds a size.
+    pub fn holds(&self, size: f64) -> bool {
+        let found = self.found[self.which];
+        match self.chances(size, DRAWS) {
+            Some(p) => p.iter().all(|p| *p > self.tail),
+            None => size == found,
+        }
+    }
+
+    /// The size at which the surplus changes its sign, outwards from the centre: found with few draws, finished with all.
+    fn bound(&self, center: f64, seen: f64, end: End) -> f64 {
+        let (outwards, none) = match end {
             End::Low => (-1.0, 0.0),
             End::High => (1.0, f64::INFINITY),
         };
-        let surplus = |at: f64| self.surplus(center * at.exp(), end);
-        let (mut within, mut step) = ((0.0, None), STEP);
         // In the logarithm from the centre.
-        let mut out = loop {
-            let at: f64 = within.0 + sign * step;
-            if at.abs() > FARTHEST.ln() {
-                return none;
-            }
-            match surplus(at) {
-                Some(s) if s < 0.0 => break (at, s),
-                found => within = (at, found),
-            }
-            step *= GROWTH;
+        let first = normal_quantile(1.0 - self.tail) * seen / center;
+        let Some(rough) = self.rough(center, outwards * first.clamp(NARROW, 1.0), end) else {
+            return none;
         };
-        let mut within = (within.0, within.1.unwrap_or(-normal_quantile(self.tail)));
-        // Regula falsi, with the weight of an end halved that stays twice.
-        let mut stayed = 0;
+        let (mut at, mut slope) = (rough, normal_quantile(self.tail) / rough);
+        let mut last: Option<[f64; 2]> = None;
         for _ in 0..TRIALS {
-            let at = within.0 + (out.0 - within.0) * within.1 / (within.1 - out.1);
-            if (out.0 - within.0).abs() < FINE {
-                return center * at.exp();
+            let Some(s) = self.surplus(center * at.exp(), end, DRAWS) else { return none };
+            if let Some([before, then]) = last {
+                let new = (s - then) / (at - before);
+                // Farther out there is less surplus.
+                slope = if new * outwards < 0.0 { new } else { slope };
             }
-            let Some(s) = surplus(at) else { return none };
+            last = Some([at, s]);
+            at -= (s / slope).clamp(-0.5 * rough.abs(), 0.5 * rough.abs());
             if s.abs() < NEAR {
-                return center * at.exp();
-            }
-            if s < 0.0 {
-                out = (at, s);
-                stayed = if stayed < 0 { stayed - 1 } else { -1 };
-                within.1 *= if stayed < -1 { 0.5 } else { 1.0 };
-            } else {
-                within = (at, s);
-                stayed = if stayed > 0 { stayed + 1 } else { 1 };
-                out.1 *= if stayed > 1 { 0.5 } else { 1.0 };
+                break;
             }
         }
-        center * (0.5 * (within.0 + out.0)).exp()
+        center * at.exp()
+    }
+
+    /// About where the surplus changes its sign.
+    fn rough(&self, center: f64, first: f64, end: End) -> Option<f64> {
+        let surplus = |at: f64| self.surplus(center * at.exp(), end, FEW);
+        let mut within = (0.0, -normal_quantile(self.tail));
+        let mut at = first;
+        let mut out = loop {
+            match surplus(at) {
+                Some(s) if s >= 0.0 => within = (at, s),
+                Some(s) => break (at, s),
+                None => return None,
+            }
+            at *= GROWTH;
+            if at.abs() > FARTHEST.ln() {
+                return None;
+            }
+        };
+        for _ in 0..TRIALS {
+            if (out.0 - within.0).abs() < FINE * out.0.abs() {
+                break;
+            }
+            // Regula falsi, kept off the ends.
+            let part: f64 = within.1 / (within.1 - out.1);
+            let at = within.0 + (out.0 - within.0) * part.clamp(0.1, 0.9);
+            match surplus(at)? {
+                s if s.abs() < NEAR => return Some(at),
+                s if s < 0.0 => out = (at, s),
+                s => within = (at, s),
+            }
+        }
+        Some(0.5 * (within.0 + out.0))
     }
 
     /// How far the probability of so small (at the upper end) or so large a root is above the tail, in normal quantiles.
-    fn surplus(&self, size: f64, end: End) -> Option<f64> {
-        let [small, large] = self.chances(size)?;
+    fn surplus(&self, size: f64, end: End, draws: usize) -> Option<f64> {
+        let [small, large] = self.chances(size, draws)?;
         let p = if end == End::Low { large } else { small };
-        // Of all draws: one would have an infinite quantile.
-        let p = p.min(1.0 - 0.5 / DRAWS as f64);
-        Some(normal_quantile(p) - normal_quantile(self.tail))
+        // All draws would have an infinite quantile.
+        Some(normal_quantile(p.min(1.0 - 0.5 / draws as f64)) - normal_quantile(self.tail))
     }
 
     /// Probabilities of a root as small, and of one as large, as the record's own at a true size.
-    pub fn chances(&self, size: f64) -> Option<[f64; 2]> {
+    fn chances(&self, size: f64, draws: usize) -> Option<[f64; 2]> {
         let i = self.which;
         let mut start = self.found;
         start[i] = size;
@@ -134,12 +162,12 @@ impl Trial<'_> {
         let (mut small, mut large) = (1.0, 1.0);
         let covariance = self.covariance(model);
         let model = Coefficients::from_order(model);
-        for drawn in self.draws.variances(self.variances, &model, &covariance)? {
+        for drawn in self.draws.variances(self.variances, &model, &covariance, draws)? {
             let other = root(&drawn)?;
             small += f64::from(u8::from(other <= own));
             large += f64::from(u8::from(other >= own));
         }
-        Some([small, large].map(|n| n / (DRAWS + 1) as f64))
+        Some([small, large].map(|n| n / (draws + 1) as f64))
     }
 
     fn covariance(&self, model: [f64; COUNT]) -> Matrix {

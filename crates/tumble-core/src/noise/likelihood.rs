@@ -3,7 +3,7 @@
 //! Weighted least squares finds a coefficient by what it adds to the variances. A weak random walk beside a strong ramp
 //! adds nothing that is seen, yet most of the scatter of the ramp is its own: only the covariance shows it.
 
-use super::cholesky::Cholesky;
+use super::cholesky::{Cholesky, dot};
 use super::covariance::AllanCovariance;
 use super::model::columns;
 use super::nonnegative::{COUNT, least};
@@ -100,14 +100,11 @@ impl Scoring {
             let others = (0..COUNT).filter(|k| !self.held[*k]);
             right[j] += others.map(|k| self.bend[j][k] * start[k]).sum::<f64>();
         }
-        let guess = (0..COUNT).filter(|j| !self.held[*j] && self.at[*j] > 0.0).map(|j| 1 << j).sum();
+        let guess =
+            (0..COUNT).filter(|j| !self.held[*j] && self.at[*j] > 0.0).map(|j| 1 << j).sum();
         let x = least(&self.bend, &right, self.held, guess).x;
         core::array::from_fn(|j| if self.held[j] { self.at[j] } else { x[j] * self.size[j] })
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Coefficients and what they are worth.

@@ -38,7 +38,7 @@ pub use deviation::{Deviation, Variance, octaves, variances};
 pub use edf::{band, degrees_of_freedom, degrees_of_freedom_discrete};
 pub use filter::unfiltered;
 pub use kind::{KindSums, NoiseKind, kind_at};
-pub use model::{Coefficient, Coefficients, NoiseFit, explore, fit};
+pub use model::{Coefficient, Coefficients, NoiseFit, fit, intervals_hold};
 pub use octave::allan_octaves;
 pub use record::{MOST_FOR_ALL, MOST_IN_MEMORY, MOST_PIECES, NoiseError, NoiseRecord, Times};
 pub use steps::{FIRST_READINGS, MOST_JITTER, QUIET_JITTER, Step, StepError, StepWatch};

@@ -38,7 +38,7 @@ impl Draws {
         Self { normals }
     }
 
-    /// Variances of other records under a model with its covariance.
+    /// Variances of `draws` other records under a model with its covariance.
     ///
     /// **Model** each variance is a scaled `χ²` of its mean and variance (Wilson and Hilferty's cube of a normal number);
     /// the normal numbers have the correlations of the variances.
@@ -47,6 +47,7 @@ impl Draws {
         variances: &[Variance],
         model: &Coefficients,
         covariance: &Matrix,
+        draws: usize,
     ) -> Option<Vec<Vec<f64>>> {
         let n = variances.len();
         let mut correlation = Matrix::zeros(n, n);
@@ -66,7 +67,7 @@ impl Draws {
                 [mean, 1.0 - ninth, ninth.sqrt()]
             })
             .collect();
-        let drawn = self.normals.iter().map(|z| {
+        let drawn = self.normals.iter().take(draws).map(|z| {
             let mut y = lower.product(z);
             for (y, [mean, middle, spread]) in y.iter_mut().zip(&marginals) {
                 *y = mean * (middle + spread * *y).max(0.0).powi(3);

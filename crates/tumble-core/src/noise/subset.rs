@@ -1,7 +1,7 @@
 //! Weighted least squares with no coefficient negative, by trying all sets of coefficients.
 
 use super::Variance;
-use super::cholesky::Cholesky;
+use super::cholesky::{Cholesky, dot};
 use super::model::columns;
 pub(super) use super::nonnegative::COUNT;
 use super::nonnegative::{inverse, least};
@@ -35,7 +35,6 @@ impl Problem {
         let columns: [Vec<f64>; COUNT] = core::array::from_fn(|i| {
             whiten.solve_lower(&rows.iter().map(|r| r[i]).collect::<Vec<_>>())
         });
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let sizes: [f64; COUNT] = core::array::from_fn(|i| dot(&columns[i], &columns[i]).sqrt());
         let gram = core::array::from_fn(|i| {
             core::array::from_fn(|j| dot(&columns[i], &columns[j]) / (sizes[i] * sizes[j]))
