@@ -3,7 +3,9 @@
 use rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
-use tumble_core::noise::{Deviation, Velocity, fit, intervals_hold, octaves, variances};
+use tumble_core::noise::{
+    Coefficient, Deviation, Velocity, fit, intervals_hold, octaves, variances,
+};
 
 /// Readings with Q, N, K, R (B by a sum of Gauss–Markov processes, an octave each).
 fn record(n: usize, dt: f64, truth: [f64; 5], seed: u64) -> Vec<f64> {
@@ -152,26 +154,30 @@ fn five_kinds() {
     holds_its_claim("Q N B K R", [4e-5, 1e-3, 4e-4, 1e-4, 3e-5], &plain);
 }
 
-/// What the shares are counted with is what the intervals say.
+/// The shares are counted with the test that intervals are made of, at the truth; the ends of the intervals say the same.
+/// Near an end the test may change its mind more than once, where a weak coefficient enters or leaves the model.
 #[test]
-fn ends_are_where_the_test_changes() {
-    /// How far the search leaves an end from its place, relative to the end.
-    const END: f64 = 0.01;
+fn ends_say_what_the_test_says() {
+    /// Part of the comparisons that may differ.
+    const DIFFERENT: f64 = 0.01;
     let truth = [4e-5, 1e-3, 4e-4, 1e-4, 3e-5];
-    for seed in 0..3 {
+    let records = if std::env::var_os("TUMBLE_LONG").is_some() { 400 } else { 10 };
+    let mut different = 0;
+    for seed in 0..records {
         let readings = record(READINGS, INTERVAL_S, truth, FIRST_SEED + seed);
         let v = Velocity::of(&readings, INTERVAL_S).unwrap();
         let found = variances(&v, Deviation::Allan, &octaves(READINGS));
         let f = fit(&found, INTERVAL_S, CLAIM).unwrap();
-        let holds = |at: [f64; 5]| intervals_hold(&found, INTERVAL_S, CLAIM, at.map(Some)).unwrap();
-        let ends = |k: usize, part: f64| f.coefficients.map(|c| c.interval[k] * part);
-        assert_eq!(holds(ends(1, 1.0 - END)), [Some(true); 5], "{seed}");
-        assert_eq!(holds(ends(1, 1.0 + END)), [Some(false); 5], "{seed}");
-        let (within, out) = (holds(ends(0, 1.0 + END)), holds(ends(0, 1.0 - END)));
-        for i in (0..5).filter(|i| f.coefficients[*i].interval[0] > 0.0) {
-            assert_eq!((within[i], out[i]), (Some(true), Some(false)), "{seed} {}", NAMES[i]);
+        let holds = intervals_hold(&found, INTERVAL_S, CLAIM, truth.map(Some)).unwrap();
+        for i in 0..5 {
+            let Coefficient { value, interval: [low, high], .. } = f.coefficients[i];
+            assert!(low <= value && value <= high, "{seed} {}: {low} {value} {high}", NAMES[i]);
+            different += u64::from(holds[i] != Some(low <= truth[i] && truth[i] <= high));
         }
     }
+    let part = different as f64 / (5 * records) as f64;
+    println!("ends and test differ in {:.2} % of {} cases", 100.0 * part, 5 * records);
+    assert!(part <= DIFFERENT, "{part}");
 }
 
 /// A converter whose step is near the noise: its rounding is white noise of the readings, `q/√12` each, and what is found
