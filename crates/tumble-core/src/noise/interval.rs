@@ -9,7 +9,8 @@ use crate::linalg::Matrix;
 use crate::stats::normal_quantile;
 
 /// What another coefficient must add to twice the logarithm of the likelihood to stand in the model that is drawn from.
-/// With less, what is not there widens the intervals of the others; with more, what is there but weak is missed.
+/// With less, what is not there widens the intervals of the others; with more, what is there but weak is missed. By
+/// simulation: with 2 (Akaike's) flicker beside a weak random walk is held a percent less.
 const WORTH: f64 = 1.0;
 /// Sizes that are tried, about what was found or what is just seen.
 const FARTHEST: f64 = 1e6;
@@ -21,8 +22,8 @@ const NARROW: f64 = 1e-3;
 const TRIALS: usize = 8;
 const NEAR: f64 = 0.05;
 const FINE: f64 = 0.02;
-/// Draws that find a bound roughly.
-const FEW: usize = 199;
+/// Draws beyond a bound where it is found roughly: 200 in all at 95 %.
+const FEW: f64 = 5.0;
 
 /// What the sizes are tried on.
 pub(super) struct Trial<'a> {
@@ -103,7 +104,8 @@ impl Trial<'_> {
 
     /// About where the surplus changes its sign.
     fn rough(&self, center: f64, first: f64, end: End) -> Option<f64> {
-        let surplus = |at: f64| self.surplus(center * at.exp(), end, FEW);
+        let few = ((FEW / self.tail).ceil() as usize).min(DRAWS);
+        let surplus = |at: f64| self.surplus(center * at.exp(), end, few);
         let mut within = (0.0, -normal_quantile(self.tail));
         let mut at = first;
         let mut out = loop {

@@ -47,8 +47,8 @@ const MANY_RECORDS: u64 = 2000;
 /// The claim: a 95 % interval holds the truth in 95 ± 1.5 % of records.
 const CLAIM: f64 = 0.95;
 const CLAIM_TOLERANCE: f64 = 0.015;
-/// First seed: that of the long tier was fixed before the method was chosen, on others.
-const FIRST_SEED: u64 = 1_000_001;
+/// First seed. The method was chosen on seeds 1 to 9000 and once looked at from 1 000 001 on; these had not been seen.
+const FIRST_SEED: u64 = 2_000_001;
 
 /// Records whose interval holds the truth, by coefficient; records are shared among threads.
 fn held(records: u64, truth: [f64; 5], reading: &(dyn Fn(f64) -> f64 + Sync)) -> [u64; 5] {
@@ -161,7 +161,7 @@ fn ends_say_what_the_test_says() {
     /// Part of the comparisons that may differ.
     const DIFFERENT: f64 = 0.01;
     let truth = [4e-5, 1e-3, 4e-4, 1e-4, 3e-5];
-    let records = if std::env::var_os("TUMBLE_LONG").is_some() { 400 } else { 10 };
+    let records = if std::env::var_os("TUMBLE_LONG").is_some() { 100 } else { 10 };
     let mut different = 0;
     for seed in 0..records {
         let readings = record(READINGS, INTERVAL_S, truth, FIRST_SEED + seed);
