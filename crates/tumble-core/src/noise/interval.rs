@@ -11,7 +11,7 @@ use crate::stats::normal_quantile;
 /// What another coefficient must add to twice the logarithm of the likelihood to stand in the model that is drawn from.
 /// With less, what is not there widens the intervals of the others; with more, what is there but weak is missed. By
 /// simulation: with 2 (Akaike's) flicker and ramp beside a weak random walk are held up to a percent less.
-const WORTH: f64 = 0.7;
+const WORTH: f64 = 1.0;
 /// Sizes that are tried, about what was found or what is just seen.
 const FARTHEST: f64 = 1e6;
 /// Growth of the step from what was found, and the least first one, in the logarithm of the squared coefficient.

@@ -94,7 +94,7 @@ pub struct NoiseFit {
 /// knows that a coefficient that was left out may be there after all, and is not symmetric. It may be far wider than the
 /// standard uncertainty: a ramp is not known better than the random walk beside it, which may be hard to see. Real sensors
 /// have filters, vibration and noise of other kinds, and long records show them: where `χ²` is no chance, a relative
-/// discrepancy of every variance is estimated and stands in weights and intervals. A level above 0.998 is more than the
+/// discrepancy of every variance is estimated and stands in weights and intervals. A level above 0.995 is more than the
 /// draws can tell: intervals then have no ends.
 ///
 /// `None` with fewer than two variances, or where one is zero.

@@ -7,8 +7,9 @@ use super::{Coefficients, Variance};
 use crate::linalg::Matrix;
 use crate::stats::normal_quantile;
 
-/// Draws: ranks of 1/2000 each. With 999, what chance made of the draws showed as 0.3 % in how often intervals hold the truth.
-pub(super) const DRAWS: usize = 1999;
+/// Draws: ranks of 1/1000 each. Chance in this one set of draws moves how often intervals hold the truth by up to half a
+/// percent.
+pub(super) const DRAWS: usize = 999;
 /// Where the random numbers begin: the same for every fit, so that the same record gives the same answer.
 const SEED: u64 = 0x000a_11a4;
 
