@@ -4,58 +4,74 @@ use crate::linalg::Matrix;
 
 /// `C = L Lᵀ`.
 pub(super) struct Cholesky {
-    lower: Matrix,
+    size: usize,
+    /// Row by row.
+    lower: Vec<f64>,
 }
 
 impl Cholesky {
     pub fn of(c: &Matrix) -> Option<Self> {
-        let n = c.rows();
-        let mut l = Matrix::zeros(n, n);
-        for j in 0..n {
-            let mut d = c[(j, j)];
-            for k in 0..j {
-                d -= l[(j, k)] * l[(j, k)];
+        let size = c.rows();
+        let mut lower = vec![0.0; size * size];
+        for i in 0..size {
+            let (above, own) = lower.split_at_mut(i * size);
+            for j in 0..i {
+                let row = &above[j * size..];
+                own[j] = (c[(i, j)] - dot(&own[..j], &row[..j])) / row[j];
             }
             // Thinned sums leave a covariance that is not quite one: held at a thousandth of the diagonal.
-            let d = d.max(1e-3 * c[(j, j)]);
+            let d = (c[(i, i)] - dot(&own[..i], &own[..i])).max(1e-3 * c[(i, i)]);
             if !(d > 0.0 && d.is_finite()) {
                 return None;
             }
-            l[(j, j)] = d.sqrt();
-            for i in j + 1..n {
-                let mut s = c[(i, j)];
-                for k in 0..j {
-                    s -= l[(i, k)] * l[(j, k)];
-                }
-                l[(i, j)] = s / l[(j, j)];
+            own[i] = d.sqrt();
+        }
+        Some(Self { size, lower })
+    }
+
+    fn row(&self, i: usize) -> &[f64] {
+        &self.lower[i * self.size..(i + 1) * self.size]
+    }
+
+    /// `L y`.
+    pub fn product(&self, y: &[f64]) -> Vec<f64> {
+        (0..self.size).map(|i| dot(&self.row(i)[..=i], &y[..=i])).collect()
+    }
+
+    /// `ln |C|`.
+    pub fn log_determinant(&self) -> f64 {
+        2.0 * (0..self.size).map(|i| self.row(i)[i].ln()).sum::<f64>()
+    }
+
+    /// `L⁻¹ D L⁻ᵀ` of a symmetric matrix, row by row.
+    pub fn both_sides(&self, d: &Matrix) -> Vec<f64> {
+        let n = self.size;
+        // Rows of D L⁻ᵀ; what is left is to do the same with its columns.
+        let rows: Vec<Vec<f64>> = (0..n)
+            .map(|i| self.solve_lower(&(0..n).map(|j| d[(i, j)]).collect::<Vec<_>>()))
+            .collect();
+        let mut out = vec![0.0; n * n];
+        for j in 0..n {
+            let column: Vec<f64> = rows.iter().map(|row| row[j]).collect();
+            for (i, x) in self.solve_lower(&column).into_iter().enumerate() {
+                out[i * n + j] = x;
             }
         }
-        Some(Self { lower: l })
+        out
     }
 
     /// `L⁻¹ y`.
     pub fn solve_lower(&self, y: &[f64]) -> Vec<f64> {
         let mut out = y.to_vec();
-        for i in 0..out.len() {
-            for k in 0..i {
-                let known = out[k];
-                out[i] -= self.lower[(i, k)] * known;
-            }
-            out[i] /= self.lower[(i, i)];
+        for i in 0..self.size {
+            let row = self.row(i);
+            out[i] = (out[i] - dot(&row[..i], &out[..i])) / row[i];
         }
         out
     }
+}
 
-    /// `L⁻ᵀ y`.
-    pub fn solve_upper(&self, y: &[f64]) -> Vec<f64> {
-        let mut out = y.to_vec();
-        for i in (0..out.len()).rev() {
-            for k in i + 1..out.len() {
-                let known = out[k];
-                out[i] -= self.lower[(k, i)] * known;
-            }
-            out[i] /= self.lower[(i, i)];
-        }
-        out
-    }
+/// Sum of products.
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -31,17 +31,25 @@ pub struct AllanCovariance {
     pairs: Vec<Pair>,
 }
 
-/// What a pair of variances has in common, by kinds of noise.
-#[derive(Debug, Clone)]
-struct Pair {
-    /// `Σ w γ_j γ_k` by kinds `j ≤ k`, with all factors.
-    products: [[f64; KINDS]; KINDS],
-    /// What a unit of `R²` adds beside a unit of each kind.
-    beside_ramp: [f64; KINDS],
-}
+/// What a pair of variances has in common, in the order of [`weights`].
+type Pair = [f64; WEIGHTS];
 
 /// Q, N, B, K.
 const KINDS: usize = 4;
+/// Pairs of kinds, and each kind beside the ramp.
+const WEIGHTS: usize = KINDS * (KINDS + 1) / 2 + KINDS;
+
+/// Products of squared coefficients: each pair of kinds once, then each kind and the ramp.
+fn weights(model: &Coefficients) -> Pair {
+    let c = [model.q2, model.n2, model.b2, model.k2];
+    let mut out = [0.0; WEIGHTS];
+    let mut places = out.iter_mut();
+    for i in 0..KINDS {
+        (i..KINDS).zip(&mut places).for_each(|(j, place)| *place = c[i] * c[j]);
+    }
+    c.iter().zip(places).for_each(|(c, place)| *place = c * model.r2);
+    out
+}
 
 impl AllanCovariance {
     /// Of variances of one record whose readings are `interval_s` apart.
@@ -66,18 +74,12 @@ impl AllanCovariance {
     /// The covariance under a model.
     #[must_use]
     pub fn at(&self, model: &Coefficients) -> Matrix {
-        let c = [model.q2, model.n2, model.b2, model.k2];
+        let weights = weights(model);
         let mut out = Matrix::zeros(self.size, self.size);
         let mut pairs = self.pairs.iter();
         for i in 0..self.size {
             for (j, pair) in (i..self.size).zip(&mut pairs) {
-                let mut sum = 0.0;
-                for k in 0..KINDS {
-                    sum += model.r2 * c[k] * pair.beside_ramp[k];
-                    for l in 0..KINDS {
-                        sum += c[k] * c[l] * pair.products[k][l];
-                    }
-                }
+                let sum: f64 = weights.iter().zip(pair).map(|(w, p)| w * p).sum();
                 out[(i, j)] = sum;
                 out[(j, i)] = sum;
             }
@@ -131,8 +133,17 @@ fn pair(a: &Variance, b: &Variance, interval_s: f64) -> Pair {
         }
     }
     let ramp = 4.0 * unit * (a.tau_s * b.tau_s).powi(2);
-    let beside_ramp = of_sums(a, b, interval_s).map(|s| ramp * s);
-    Pair { products, beside_ramp }
+    let beside_ramp = of_sums(a, b, interval_s);
+    let mut out = [0.0; WEIGHTS];
+    let mut places = out.iter_mut();
+    for i in 0..KINDS {
+        for (j, place) in (i..KINDS).zip(&mut places) {
+            // Each unlike pair stands for two.
+            *place = if i == j { products[i][j] } else { 2.0 * products[i][j] };
+        }
+    }
+    beside_ramp.iter().zip(places).for_each(|(s, place)| *place = ramp * s);
+    out
 }
 
 /// `Σ_l w(l) γ_ab(l)`: covariance of the sums of all differences at `a` and at `b`. They telescope: of the velocity only

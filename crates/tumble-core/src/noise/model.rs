@@ -3,7 +3,8 @@
 use super::Variance;
 use super::covariance::AllanCovariance;
 use super::interval::Trial;
-use super::subset::{Problem, Subset};
+use super::resampling::Draws;
+use super::subset::{COUNT, Problem, Subset};
 use crate::linalg::Matrix;
 use crate::stats::chi_squared_p_value;
 
@@ -89,50 +90,28 @@ pub struct NoiseFit {
 /// The covariance is that of the fitted model itself, found in a few rounds.
 ///
 /// **Uncertainty** the standard uncertainty is that of the fit with the coefficients that are left in it. The interval
-/// holds the true sizes at which what was found is no surprise, the other coefficients fitted anew at each size: it knows
-/// that a coefficient that was left out may be there after all, and is not symmetric. Real sensors have filters, vibration
-/// and noise of other kinds, and long records show them: where `χ²` is no chance, a relative discrepancy of every variance is
-/// estimated and stands in weights and intervals.
+/// holds the true sizes at which what was found is no surprise, judged by records drawn with that size and fitted anew: it
+/// knows that a coefficient that was left out may be there after all, and is not symmetric. It may be far wider than the
+/// standard uncertainty: a ramp is not known better than the random walk beside it, which may be hard to see. Real sensors
+/// have filters, vibration and noise of other kinds, and long records show them: where `χ²` is no chance, a relative
+/// discrepancy of every variance is estimated and stands in weights and intervals. A level above 0.995 is more than the
+/// draws can tell: intervals then have no ends.
 ///
 /// `None` with fewer than two variances, or where one is zero.
 #[must_use]
 pub fn fit(variances: &[Variance], interval_s: f64, level: f64) -> Option<NoiseFit> {
-    let n = variances.len();
-    if n < 2 || !variances.iter().all(|v| v.variance > 0.0 && v.variance.is_finite()) {
-        return None;
-    }
-    // To begin with: relative weights by the number of independent averages.
-    let mut c = Matrix::zeros(n, n);
-    for (i, v) in variances.iter().enumerate() {
-        c[(i, i)] = v.variance.powi(2) * 2.0 * v.factor as f64 / v.terms as f64;
-    }
-    let first = Problem::new(variances, &c)?.best(n, None)?;
-    let mut family = AllanCovariance::of(variances, interval_s);
-    let (mut problem, mut best) = rounds(variances, &family, &first)?;
-    let dof = n.saturating_sub(best.set.iter().filter(|s| **s).count());
-    let chi_squared = best.chi_squared;
-    let mut discrepancy = 0.0;
-    if chi_squared_p_value(chi_squared, dof as f64).is_some_and(|p| p < NO_CHANCE) {
-        discrepancy = found_discrepancy(variances, &family, &first);
-        family = family.with_discrepancy(discrepancy);
-        (problem, best) = rounds(variances, &family, &first)?;
-    }
+    let found = Found::of(variances, interval_s)?;
+    let draws = Draws::of(variances.len());
+    let best = &found.best;
     let coefficients = core::array::from_fn(|which| {
         let square = best.values[which];
         let mut set = best.set;
         set[which] = true;
         // Of a coefficient that was left out: what it would have been known to.
-        let tail = 0.5 * (1.0 - level);
-        let let_in = problem.fit(n, set, None).zip(problem.weights(set, which));
-        let interval = match let_in {
-            Some((s, weights)) => {
-                let (found, let_in) = (best.values, s.values[which]);
-                let family = &family;
-                let trial = Trial { variances, family, found, which, tail, weights, let_in };
-                trial.interval(s.uncertainties[which])
-            }
-            None => [0.0, f64::INFINITY],
-        };
+        let let_in = found.problem.fit(variances.len(), set, None);
+        let interval = let_in.map_or([0.0, f64::INFINITY], |s| {
+            found.trial(variances, &draws, which, level).interval(s.uncertainties[which])
+        });
         Coefficient {
             value: square.sqrt(),
             standard_uncertainty: (square > 0.0)
@@ -143,10 +122,75 @@ pub fn fit(variances: &[Variance], interval_s: f64, level: f64) -> Option<NoiseF
     Some(NoiseFit {
         coefficients,
         squares: Coefficients::from_order(best.values),
-        chi_squared,
-        discrepancy,
-        degrees_of_freedom: dof,
+        chi_squared: found.chi_squared,
+        discrepancy: found.discrepancy,
+        degrees_of_freedom: found.degrees_of_freedom,
     })
+}
+
+/// Whether the intervals of [`fit`] hold given values of some coefficients: the test that the intervals are made of, without
+/// looking for their ends.
+///
+/// `None` where there is no fit, and of a coefficient that is not asked for.
+#[must_use]
+pub fn intervals_hold(
+    variances: &[Variance],
+    interval_s: f64,
+    level: f64,
+    values: [Option<f64>; COUNT],
+) -> Option<[Option<bool>; COUNT]> {
+    let found = Found::of(variances, interval_s)?;
+    let draws = Draws::of(variances.len());
+    Some(core::array::from_fn(|i| {
+        values[i].map(|value| found.trial(variances, &draws, i, level).holds(value * value))
+    }))
+}
+
+/// What the variances give before intervals.
+struct Found {
+    family: AllanCovariance,
+    problem: Problem,
+    best: Subset,
+    chi_squared: f64,
+    degrees_of_freedom: usize,
+    discrepancy: f64,
+}
+
+impl Found {
+    fn of(variances: &[Variance], interval_s: f64) -> Option<Self> {
+        let n = variances.len();
+        if n < 2 || !variances.iter().all(|v| v.variance > 0.0 && v.variance.is_finite()) {
+            return None;
+        }
+        // To begin with: relative weights by the number of independent averages.
+        let mut c = Matrix::zeros(n, n);
+        for (i, v) in variances.iter().enumerate() {
+            c[(i, i)] = v.variance.powi(2) * 2.0 * v.factor as f64 / v.terms as f64;
+        }
+        let first = Problem::new(variances, &c)?.best(n, None)?;
+        let mut family = AllanCovariance::of(variances, interval_s);
+        let (mut problem, mut best) = rounds(variances, &family, &first)?;
+        let dof = n.saturating_sub(best.set.iter().filter(|s| **s).count());
+        let chi_squared = best.chi_squared;
+        let mut discrepancy = 0.0;
+        if chi_squared_p_value(chi_squared, dof as f64).is_some_and(|p| p < NO_CHANCE) {
+            discrepancy = found_discrepancy(variances, &family, &first);
+            family = family.with_discrepancy(discrepancy);
+            (problem, best) = rounds(variances, &family, &first)?;
+        }
+        Some(Self { family, problem, best, chi_squared, degrees_of_freedom: dof, discrepancy })
+    }
+
+    fn trial<'a>(
+        &'a self,
+        variances: &'a [Variance],
+        draws: &'a Draws,
+        which: usize,
+        level: f64,
+    ) -> Trial<'a> {
+        let (family, found) = (&self.family, self.best.values);
+        Trial { variances, family, draws, found, which, tail: 0.5 * (1.0 - level) }
+    }
 }
 
 /// The fit and its covariance brought together, from a first fit on.

@@ -1,12 +1,11 @@
 //! Weighted least squares with no coefficient negative, by trying all sets of coefficients.
 
 use super::Variance;
-use super::cholesky::Cholesky;
+use super::cholesky::{Cholesky, dot};
 use super::model::columns;
+pub(super) use super::nonnegative::COUNT;
+use super::nonnegative::{inverse, least};
 use crate::linalg::Matrix;
-
-/// Coefficients.
-pub(super) const COUNT: usize = 5;
 
 /// A fit with some of the coefficients.
 #[derive(Debug, Clone)]
@@ -19,8 +18,6 @@ pub(super) struct Subset {
 
 /// The problem under one covariance: products of the whitened columns and variances.
 pub(super) struct Problem {
-    whiten: Cholesky,
-    columns: [Vec<f64>; COUNT],
     /// `‖column‖`, taken out of the products.
     sizes: [f64; COUNT],
     gram: [[f64; COUNT]; COUNT],
@@ -34,18 +31,17 @@ impl Problem {
     pub fn new(variances: &[Variance], covariance: &Matrix) -> Option<Self> {
         let whiten = Cholesky::of(covariance)?;
         let y = whiten.solve_lower(&variances.iter().map(|v| v.variance).collect::<Vec<_>>());
+        let rows: Vec<[f64; COUNT]> = variances.iter().map(|v| columns(v.tau_s)).collect();
         let columns: [Vec<f64>; COUNT] = core::array::from_fn(|i| {
-            let column: Vec<f64> = variances.iter().map(|v| columns(v.tau_s)[i]).collect();
-            whiten.solve_lower(&column)
+            whiten.solve_lower(&rows.iter().map(|r| r[i]).collect::<Vec<_>>())
         });
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let sizes: [f64; COUNT] = core::array::from_fn(|i| dot(&columns[i], &columns[i]).sqrt());
         let gram = core::array::from_fn(|i| {
             core::array::from_fn(|j| dot(&columns[i], &columns[j]) / (sizes[i] * sizes[j]))
         });
         let right = core::array::from_fn(|i| dot(&columns[i], &y) / sizes[i]);
         let square = dot(&y, &y);
-        Some(Self { whiten, columns, sizes, gram, right, square })
+        Some(Self { sizes, gram, right, square })
     }
 
     /// The best set with none negative, of those that hold (or lack) what is asked; a coefficient may be fixed.
@@ -78,7 +74,7 @@ impl Problem {
             (0..COUNT).for_each(|j| right[j] -= size * self.gram[j][i]);
             values[i] = value;
         }
-        let inverse = self.inverse(&places)?;
+        let inverse = inverse(&self.gram, &places)?;
         for (k, i) in places.iter().enumerate() {
             let scaled: f64 = (0..p).map(|l| inverse[k][l] * right[places[l]]).sum();
             values[*i] = scaled / self.sizes[*i];
@@ -88,54 +84,15 @@ impl Problem {
         Some(Subset { set, values, uncertainties, chi_squared: square.max(0.0) })
     }
 
-    /// How each variance moves a coefficient of a set.
-    pub fn weights(&self, set: [bool; COUNT], of: usize) -> Option<Vec<f64>> {
-        let places: Vec<usize> = (0..COUNT).filter(|i| set[*i]).collect();
-        let k = places.iter().position(|i| *i == of)?;
-        let inverse = self.inverse(&places)?;
-        let whitened: Vec<f64> = (0..self.columns[of].len())
-            .map(|j| {
-                places
-                    .iter()
-                    .enumerate()
-                    .map(|(l, i)| inverse[k][l] * self.columns[*i][j] / self.sizes[*i])
-                    .sum::<f64>()
-                    / self.sizes[of]
-            })
-            .collect();
-        Some(self.whiten.solve_upper(&whitened))
-    }
-
-    /// Inverse of the products of some columns, by Gauss and Jordan; `None` where they cannot be told apart.
-    fn inverse(&self, places: &[usize]) -> Option<[[f64; COUNT]; COUNT]> {
-        /// Part of a column that the others must leave.
-        const INDEPENDENT: f64 = 1e-12;
-        let p = places.len();
-        let mut a = [[0.0; COUNT]; COUNT];
-        let mut out = [[0.0; COUNT]; COUNT];
-        for k in 0..p {
-            out[k][k] = 1.0;
-            for l in 0..p {
-                a[k][l] = self.gram[places[k]][places[l]];
-            }
-        }
-        for k in 0..p {
-            let pivot = a[k][k];
-            if pivot <= INDEPENDENT || pivot.is_nan() {
-                return None;
-            }
-            for l in 0..p {
-                a[k][l] /= pivot;
-                out[k][l] /= pivot;
-            }
-            for r in (0..p).filter(|r| *r != k) {
-                let factor = a[r][k];
-                for l in 0..p {
-                    a[r][l] -= factor * a[k][l];
-                    out[r][l] -= factor * out[k][l];
-                }
-            }
-        }
-        Some(out)
+    /// How far the best value of a coefficient is from a size: the root of the growth of `χ²`, with its sign.
+    pub fn root(&self, which: usize, size: f64) -> f64 {
+        let free = least(&self.gram, &self.right, [false; COUNT], (1 << COUNT) - 1);
+        let s = size * self.sizes[which];
+        let right = core::array::from_fn(|i| self.right[i] - s * self.gram[i][which]);
+        let mut zero = [false; COUNT];
+        zero[which] = true;
+        let held = least(&self.gram, &right, zero, free.set & !(1 << which));
+        let growth = held.value + s * s - 2.0 * s * self.right[which] - free.value;
+        growth.max(0.0).sqrt().copysign(free.x[which] - s)
     }
 }

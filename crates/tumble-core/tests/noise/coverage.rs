@@ -3,7 +3,9 @@
 use rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
-use tumble_core::noise::{Deviation, Velocity, fit, octaves, variances};
+use tumble_core::noise::{
+    Coefficient, Deviation, Velocity, fit, intervals_hold, octaves, variances,
+};
 
 /// Readings with Q, N, K, R (B by a sum of Gauss–Markov processes, an octave each).
 fn record(n: usize, dt: f64, truth: [f64; 5], seed: u64) -> Vec<f64> {
@@ -45,9 +47,8 @@ const MANY_RECORDS: u64 = 2000;
 /// The claim: a 95 % interval holds the truth in 95 ± 1.5 % of records.
 const CLAIM: f64 = 0.95;
 const CLAIM_TOLERANCE: f64 = 0.015;
-/// Where another coefficient that is not there could take its place (K and B beside R, B and R beside K), the interval
-/// allows for it and holds the truth more often: 97.5 to 98.5 % in 1 200 records, never less than it says.
-const CAREFUL: f64 = 0.04;
+/// First seed; the method was chosen on seeds below 10 000.
+const FIRST_SEED: u64 = 1_000_001;
 
 /// Records whose interval holds the truth, by coefficient; records are shared among threads.
 fn held(records: u64, truth: [f64; 5], reading: &(dyn Fn(f64) -> f64 + Sync)) -> [u64; 5] {
@@ -65,15 +66,15 @@ fn held_against(
     let part = |thread: u64| {
         let mut inside = [0; 5];
         for seed in (0..records).filter(|s| s % threads == thread) {
-            let readings: Vec<f64> =
-                record(READINGS, INTERVAL_S, made, seed + 1).into_iter().map(reading).collect();
+            let readings: Vec<f64> = record(READINGS, INTERVAL_S, made, FIRST_SEED + seed)
+                .into_iter()
+                .map(reading)
+                .collect();
             let v = Velocity::of(&readings, INTERVAL_S).unwrap();
             let found = variances(&v, Deviation::Allan, &octaves(READINGS));
-            let f = fit(&found, INTERVAL_S, CLAIM).unwrap();
-            for i in 0..5 {
-                let [low, high] = f.coefficients[i].interval;
-                inside[i] += u64::from(low <= truth[i] && truth[i] <= high);
-            }
+            let asked = truth.map(|value| (value > 0.0).then_some(value));
+            let holds = intervals_hold(&found, INTERVAL_S, CLAIM, asked).unwrap();
+            (0..5).for_each(|i| inside[i] += u64::from(holds[i] == Some(true)));
         }
         inside
     };
@@ -93,12 +94,13 @@ fn holds_its_claim(case: &str, truth: [f64; 5], reading: &(dyn Fn(f64) -> f64 + 
     let records = if long { MANY_RECORDS } else { RECORDS };
     let inside = held(records, truth, reading);
     let chance = if long { 0.0 } else { 4.0 * (CLAIM * (1.0 - CLAIM) / records as f64).sqrt() };
-    for i in (0..5).filter(|i| truth[*i] > 0.0) {
-        let share = inside[i] as f64 / records as f64;
-        println!("{case}: {} {:.2} %", NAMES[i], 100.0 * share);
-        let above = if i < 3 { CLAIM_TOLERANCE } else { CAREFUL };
+    let asked = || (0..5).filter(|i| truth[*i] > 0.0);
+    let share = |i: usize| inside[i] as f64 / records as f64;
+    asked().for_each(|i| println!("{case}: {} {:.2} %", NAMES[i], 100.0 * share(i)));
+    for i in asked() {
+        let share = share(i);
         assert!(
-            share - CLAIM <= above.max(chance) && CLAIM - share <= CLAIM_TOLERANCE.max(chance),
+            (share - CLAIM).abs() <= CLAIM_TOLERANCE.max(chance),
             "{case}: {} is held in {:.2} % of records",
             NAMES[i],
             100.0 * share
@@ -139,6 +141,43 @@ fn white_and_flicker() {
 #[test]
 fn four_kinds() {
     holds_its_claim("Q N B K", [4e-5, 1e-3, 4e-4, 1e-4, 0.0], &plain);
+}
+
+/// A weak walk beside a strong ramp: most of the scatter of the ramp is the walk's, which itself is hardly seen.
+#[test]
+fn white_and_random_walk_and_ramp() {
+    holds_its_claim("N K R", [0.0, 1e-3, 0.0, 1e-4, 3e-5], &plain);
+}
+
+#[test]
+fn five_kinds() {
+    holds_its_claim("Q N B K R", [4e-5, 1e-3, 4e-4, 1e-4, 3e-5], &plain);
+}
+
+/// The shares are counted with the test that intervals are made of, at the truth; the ends of the intervals say the same.
+/// Near an end the test may change its mind more than once, where a weak coefficient enters or leaves the model.
+#[test]
+fn ends_say_what_the_test_says() {
+    /// Part of the comparisons that may differ: 1.2 % of 500 did.
+    const DIFFERENT: f64 = 0.04;
+    let truth = [4e-5, 1e-3, 4e-4, 1e-4, 3e-5];
+    let records = if std::env::var_os("TUMBLE_LONG").is_some() { 100 } else { 10 };
+    let mut different = 0;
+    for seed in 0..records {
+        let readings = record(READINGS, INTERVAL_S, truth, FIRST_SEED + seed);
+        let v = Velocity::of(&readings, INTERVAL_S).unwrap();
+        let found = variances(&v, Deviation::Allan, &octaves(READINGS));
+        let f = fit(&found, INTERVAL_S, CLAIM).unwrap();
+        let holds = intervals_hold(&found, INTERVAL_S, CLAIM, truth.map(Some)).unwrap();
+        for i in 0..5 {
+            let Coefficient { value, interval: [low, high], .. } = f.coefficients[i];
+            assert!(low <= value && value <= high, "{seed} {}: {low} {value} {high}", NAMES[i]);
+            different += u64::from(holds[i] != Some(low <= truth[i] && truth[i] <= high));
+        }
+    }
+    let part = different as f64 / (5 * records) as f64;
+    println!("ends and test differ in {:.2} % of {} cases", 100.0 * part, 5 * records);
+    assert!(part <= DIFFERENT, "{part}");
 }
 
 /// A converter whose step is near the noise: its rounding is white noise of the readings, `q/√12` each, and what is found

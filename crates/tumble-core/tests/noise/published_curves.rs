@@ -5,15 +5,29 @@
 //! devices and √rate times that for the BMI160 (200 Hz nominal, 196.4 Hz recorded): two conventions in one set. `acc_w` is
 //! the bottom of their fitted curve.
 //!
-//! What differs, and why: A3 and N3 give readings ten times faster than their filters let them change; the curve rises up
-//! to 0.05 s. Times below four times that are left out (theirs are not, and their model is thirty times too high there). All
-//! curves scatter about any Q, N, B, K, R by some percent, far beyond chance at short times: both fits are then a matter of
-//! weights.
+//! What differs, and why, by device. N is judged by what both fits must meet: the published points at the short times that
+//! determine it (0.05 to 0.5 s; 0.2 to 1 s for A3 and N3, behind their filter).
+//!
+//! * **A3, N3** give readings ten times faster than their filters let them change; the curve rises up to 0.05 s. Times below
+//!   four times that are left out. Neither the published nor the plain fit leaves them out: the published model is thirty times
+//!   too high there; the plain fit is 40 % below the points behind the filter (ours: 1 %), and its N is 40 % too small.
+//! * **xsens x, z**: the plain fit takes Q (3.9e-5 m/s on x) and about twice our B for a part of N. The curve has a hump at 40
+//!   to 1000 s that no Q, N, B, K, R make, and every one of 92 points has one vote there. At short times it is 6 to 8 % below
+//!   the points, at the first one 20 to 31 % above; ours is within 1 % on the mean. That N is 16 % (x) and 14 % (z) above the
+//!   plain fit's is the plain fit's doing.
+//! * **16448, BMI160**: the first point is 13 to 25 % below the line of white noise, the second of the 16448 11 %: a filter that
+//!   makes no summit, and is not left out. We take one point an octave, so these weigh more than among 92: our curve is 8 to
+//!   9 % (16448) and 1 to 7 % (BMI160) below the points behind them, the plain fit 3 to 4 % below (16448) or within 3 %. This
+//!   is our doing: N of these is that much too small.
+//! * **gx4**: x has a hump at 0.03 s, as vibration near 12 Hz makes one, that neither fit follows. Else both agree to 2 %.
+//!
+//! All curves scatter about any Q, N, B, K, R by some percent, far beyond chance at short times: a discrepancy is found for
+//! every one of them.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use tumble_core::noise::{NoiseFit, Variance, fit, unfiltered};
+use tumble_core::noise::{Coefficients, NoiseFit, Variance, fit, unfiltered};
 
 const DEVICES: [&str; 6] = ["16448", "A3", "N3", "BMI160", "gx4", "xsens"];
 /// The record's length that the authors state.
@@ -73,17 +87,40 @@ const AT_ONE_SECOND: f64 = 0.10;
 /// The same of the bottom: few averages stand behind the longest times, and they give them equal weight.
 const BOTTOM: f64 = 0.12;
 
-/// N of the plain fit in the logarithm that stands beside the data (`reference_fit.json`: Q, N, B, K, R).
-fn plain_fit(folder: &std::path::Path, device: &str, axis: char) -> f64 {
+/// The plain fit in the logarithm that stands beside the data (`reference_fit.json`: Q, N, B, K, R).
+fn plain_fit(folder: &std::path::Path, device: &str, axis: char) -> Coefficients {
     let text = std::fs::read_to_string(folder.join("reference_fit.json")).unwrap();
     let own = text.split(&format!("\n \"{device}\": {{")).nth(1).unwrap();
     let own = own.split(&format!("\"{axis}\": {{")).nth(1).unwrap();
     let list = own.split("\"fit_QNBKR\": [").nth(1).unwrap().split(']').next().unwrap();
-    list.split(',').nth(1).unwrap().trim().parse().unwrap()
+    let squares: Vec<f64> =
+        list.split(',').map(|c| c.trim().parse::<f64>().unwrap().powi(2)).collect();
+    let [q2, n2, b2, k2, r2] = squares.try_into().unwrap();
+    Coefficients { q2, n2, b2, k2, r2 }
 }
 
-/// Largest difference of N from the plain fit's, which weighs all 92 points alike. Not for A3 and N3: that fit holds the
-/// filtered times, and its N is 40 % too small.
+/// Mean and root mean square of `ln(model/published)` where N shows.
+fn at_short_times(
+    device: &str,
+    tau: &[f64],
+    deviation: &[f64],
+    model: &Coefficients,
+) -> (f64, f64) {
+    let times = if matches!(device, "A3" | "N3") { 0.2..=1.0 } else { 0.05..=0.5 };
+    let off: Vec<f64> = tau
+        .iter()
+        .zip(deviation)
+        .filter(|(t, _)| times.contains(*t))
+        .map(|(t, d)| (model.variance(*t).sqrt() / d).ln())
+        .collect();
+    let points = off.len() as f64;
+    let square: f64 = off.iter().map(|o| o * o).sum();
+    (off.iter().sum::<f64>() / points, (square / points).sqrt())
+}
+
+/// Largest mean difference of our curve from the published points where N shows (16448 x: its filter).
+const AT_SHORT_TIMES: f64 = 0.10;
+/// Largest difference of N from the plain fit's, unless ours is the nearer one to the published points where N shows.
 const FROM_PLAIN: f64 = 0.15;
 
 #[test]
@@ -114,13 +151,20 @@ fn coefficients_of_published_curves() {
             );
             assert!((one / acc_n - 1.0).abs() < AT_ONE_SECOND, "{device} {axis}: {one} {acc_n}");
             assert!((lowest / acc_w - 1.0).abs() < BOTTOM, "{device} {axis}: {lowest} {acc_w}");
-            let n = f.coefficients[1].value;
             let plain = plain_fit(&folder, device, axis);
-            println!("{device} {axis}: N {:+.1} % from the plain fit", 100.0 * (n / plain - 1.0));
-            let filtered = matches!(device, "A3" | "N3");
+            let off = f.coefficients[1].value / plain.n2.sqrt() - 1.0;
+            let (mean, ours) = at_short_times(device, &tau, &deviation, &f.squares);
+            let (_, theirs) = at_short_times(device, &tau, &deviation, &plain);
+            println!(
+                "{device} {axis}: N {:+.1} % from the plain fit; from the points at short times {:.1} % (the plain fit {:.1} %)",
+                100.0 * off,
+                100.0 * ours,
+                100.0 * theirs
+            );
+            assert!(mean.abs() < AT_SHORT_TIMES, "{device} {axis}: {mean}");
             assert!(
-                filtered || (n / plain - 1.0).abs() < FROM_PLAIN,
-                "{device} {axis}: {n} {plain}"
+                off.abs() < FROM_PLAIN || ours < 0.5 * theirs,
+                "{device} {axis}: {off}, {ours}"
             );
             curves += 1;
         }
