@@ -579,7 +579,7 @@ fn a_target_out_of_reach_is_a_no_with_what_would_do() {
     let usual = tumble(dir.path(), &["plan", "--range", "65", "--target", "bias=1mm/s2"]);
     assert_eq!(code(&usual), 1);
     assert!(
-        out(&usual).contains("together: ") && out(&usual).contains("K2 fitted"),
+        out(&usual).contains("together: ") && out(&usual).contains("K3 known twice as well"),
         "{}",
         out(&usual)
     );

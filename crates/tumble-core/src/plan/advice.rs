@@ -32,6 +32,8 @@ pub enum Lever {
     Remounting,
     /// Half the lean of upright dwells.
     Lean,
+    /// Half the uncertainty of K2 and K3.
+    Curvature,
     /// K2 fitted, not taken from the data sheet.
     FitK2,
     /// The same of K3.
@@ -40,7 +42,7 @@ pub enum Lever {
 
 impl Lever {
     /// All, in the order of lists.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Minute,
         Self::TwiceTheTime,
         Self::TwoRuns,
@@ -52,6 +54,7 @@ impl Lever {
         Self::Gravity,
         Self::Remounting,
         Self::Lean,
+        Self::Curvature,
         Self::FitK2,
         Self::FitK3,
     ];
@@ -71,6 +74,7 @@ impl Lever {
             Self::Gravity => "gravity",
             Self::Remounting => "remounting",
             Self::Lean => "lean",
+            Self::Curvature => "curvature",
             Self::FitK2 => "fit_k2",
             Self::FitK3 => "fit_k3",
         }
@@ -91,6 +95,7 @@ impl Lever {
             Self::Gravity => "gravity measured to 1 mGal",
             Self::Remounting => "body turned 180 deg between runs",
             Self::Lean => "upright dwells set twice as well",
+            Self::Curvature => "K2 and K3 known twice as well",
             Self::FitK2 => "K2 fitted",
             Self::FitK3 => "K3 fitted",
         }
@@ -138,8 +143,9 @@ fn pulled(problem: &PlanProblem, lever: Lever) -> Option<PlanProblem> {
     let has_upright = problem.upright == Possible::Yes;
     match lever {
         Lever::Setting => other.setting_scatter = half(problem.setting_scatter),
-        Lever::Level => halve(&mut other.systematics, Source::TiltAndLean, Source::DialZero),
-        Lever::Dial => halve(&mut other.systematics, Source::DialScale, Source::Eccentricity),
+        Lever::Level => halve(&mut other.systematics, &[Source::TiltAndLean, Source::DialZero]),
+        Lever::Dial => halve(&mut other.systematics, &[Source::DialScale, Source::Eccentricity]),
+        Lever::Curvature => halve(&mut other.systematics, &[Source::Nonlinearity]),
         Lever::Lean if has_upright => other.upright_lean = half(problem.upright_lean),
         Lever::Gravity if problem.gravity.standard_uncertainty_m_s2 > MEASURED_GRAVITY_M_S2 => {
             other.gravity.standard_uncertainty_m_s2 = MEASURED_GRAVITY_M_S2;
@@ -182,9 +188,9 @@ pub(super) fn together(problem: &PlanProblem, plan: &Layout) -> Option<Vec<Lever
     Some(out).filter(|_| ratio <= 1.0)
 }
 
-/// Halves what two sources come from.
-fn halve(inputs: &mut Inputs, one: Source, two: Source) {
-    let of_them = |l: &&mut Input| Source::of(l.quantity).is_some_and(|s| s == one || s == two);
+/// Halves what some sources come from.
+fn halve(inputs: &mut Inputs, sources: &[Source]) {
+    let of_them = |l: &&mut Input| Source::of(l.quantity).is_some_and(|s| sources.contains(&s));
     inputs.lines.iter_mut().filter(of_them).for_each(|l| *l = l.scaled(0.5));
 }
 
