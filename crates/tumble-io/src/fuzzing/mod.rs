@@ -6,6 +6,7 @@
 mod documents;
 mod files;
 mod noise;
+mod plans;
 mod texts;
 
 use std::fmt::Display;
@@ -17,6 +18,7 @@ pub use files::{
     code_stream, continuous_record, gz_source, run_file_averaged, run_file_raw, zst_source,
 };
 pub use noise::noise_record;
+pub use plans::{bench_toml, plan_file};
 pub use texts::{dates, dial_angles, header, numbers, plan_string};
 
 /// A target: its name and what it asserts.
@@ -24,7 +26,7 @@ pub type Target = (&'static str, fn(&[u8]));
 
 /// All targets, in the order in which a value passes through the parsers. Names are those of `fuzz/fuzz_targets` and
 /// `fuzz/corpus`.
-pub const TARGETS: [Target; 16] = [
+pub const TARGETS: [Target; 18] = [
     ("experiment_toml", experiment_toml),
     ("run_file_raw", run_file_raw),
     ("run_file_averaged", run_file_averaged),
@@ -40,6 +42,8 @@ pub const TARGETS: [Target; 16] = [
     ("zst_source", zst_source),
     ("plan_string", plan_string),
     ("catalogue_toml", catalogue_toml),
+    ("bench_toml", bench_toml),
+    ("plan_file", plan_file),
     ("noise_record", noise_record),
 ];
 

@@ -1,7 +1,9 @@
 //! A plan as plain data: for JSON and for renderers.
 
 use serde::Serialize;
-use tumble_core::plan::{Lever, Plan, Possible, Prediction, Term, TermPrediction, WORTH_SAYING};
+use tumble_core::plan::{
+    Gain, Lever, Plan, Possible, Prediction, Term, TermPrediction, WORTH_SAYING,
+};
 
 use super::PlanRequest;
 
@@ -58,6 +60,8 @@ pub struct PlanDocument {
     pub by_runs: Vec<PlannedRuns>,
     /// What would help, the limiting term's.
     pub gains: Vec<PlannedGain>,
+    /// What one more minute in all would buy.
+    pub next_minute: Option<PlannedGain>,
     /// What would meet the targets together, where no single one does; absent where no way was found.
     pub together: Option<Vec<PlannedLever>>,
     /// Noise of a reading over one LSB.
@@ -195,20 +199,24 @@ impl PlanDocument {
         let p = &request.problem;
         let limiting = plan.prediction.limiting().map_or(Term::Bias, |t| t.term);
         let now = plan.prediction.worst_ratio();
+        let gain = |g: &Gain| {
+            Some(PlannedGain {
+                lever: g.lever.name().into(),
+                words: g.lever.words().into(),
+                expanded: g.prediction.of(limiting)?.expanded(),
+                worst_ratio: g.prediction.worst_ratio(),
+                met: g.prediction.worst_ratio() <= 1.0,
+            })
+        };
+        // The next minute has a line of its own, however little it buys.
         let gains = plan
             .gains
             .iter()
+            .filter(|g| g.lever != Lever::Minute)
             .filter(|g| g.prediction.worst_ratio() < now * (1.0 - WORTH_SAYING))
-            .filter_map(|g| {
-                Some(PlannedGain {
-                    lever: g.lever.name().into(),
-                    words: g.lever.words().into(),
-                    expanded: g.prediction.of(limiting)?.expanded(),
-                    worst_ratio: g.prediction.worst_ratio(),
-                    met: g.prediction.worst_ratio() <= 1.0,
-                })
-            })
+            .filter_map(gain)
             .collect();
+        let next_minute = plan.gains.iter().find(|g| g.lever == Lever::Minute).and_then(gain);
         Self {
             format: 1,
             sensor: request.sensor.clone(),
@@ -256,6 +264,7 @@ impl PlanDocument {
                 })
                 .collect(),
             gains,
+            next_minute,
             together: plan.together.as_deref().map(levers),
             dither_lsb: plan.dither_lsb,
             phases_spread: plan.phases_spread,

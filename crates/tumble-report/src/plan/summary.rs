@@ -223,6 +223,11 @@ fn limits(out: &mut String, d: &PlanDocument) {
             &format!("{}, in {}: {} % of its variance", s.words, name(&t.term), fixed(share, 0)),
         );
     }
+    if let Some(minute) = &d.next_minute {
+        let share = 100.0 * (1.0 - minute.expanded / t.expanded);
+        let text = format!("takes {} % off {}", significant(share.max(0.001), 1), name(&t.term));
+        row(out, "next minute", &text);
+    }
     if d.gains.is_empty() {
         row(out, "would help", "nothing that was tried, by a hundredth or more");
         return;
