@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use tumble_io::{Check, CheckedDwell, CheckedRun, InitDraft};
 
+use crate::characters::Span;
 use crate::numbers::significant;
 use crate::sanitize::clean_text as plain;
 use crate::summary::sensor;
@@ -123,16 +124,7 @@ fn figure(out: &mut String, run: &CheckedRun, unit: &str) {
     const ROWS: usize = 11;
     let points: Vec<(f64, f64)> =
         run.dwells.iter().filter_map(|d| d.mean.map(|m| (d.angle_deg, m))).collect();
-    let range = |of: &dyn Fn(&(f64, f64)) -> f64| {
-        points
-            .iter()
-            .map(of)
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)))
-    };
-    let ((left, right), (low, high)) = (range(&|p| p.0), range(&|p| p.1));
-    if points.len() < 3 || right <= left || high <= low {
-        return;
-    }
+    let Some(Span { x: (left, right), y: (low, high) }) = Span::of(&points) else { return };
     let mut grid = vec![vec![' '; COLUMNS]; ROWS];
     let place = |v: f64, from: f64, to: f64, cells: usize| {
         (((v - from) / (to - from)) * (cells - 1) as f64).round().clamp(0.0, (cells - 1) as f64)

@@ -11,6 +11,7 @@
 //! rejected passport gets a report of why.
 
 mod catalogue;
+mod characters;
 mod check;
 mod conformity;
 mod explain;

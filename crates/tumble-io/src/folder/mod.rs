@@ -23,8 +23,8 @@ use crate::experiment_file::{
     self, BenchTable, CsvTable, DiscardValue, ExperimentFile, Orientation, RunTable, ScaleTable,
 };
 use crate::source::{DOCUMENT_LIMIT, Watch, read_document};
-pub(crate) use settings::bench as bench_of_table;
-use settings::{bench, dialect, discard, mapping, missing, output, targets, value};
+use settings::{bench, dialect, discard, mapping, missing, output, targets};
+pub(crate) use settings::{bench as bench_of_table, value};
 use systematics::systematics;
 pub(crate) use systematics::{ConverterKeys, systematics_of_tables};
 

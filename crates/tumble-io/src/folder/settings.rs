@@ -15,7 +15,7 @@ use crate::experiment_file::{
     BenchTable, CsvTable, DiscardValue, ExperimentFile, OutputTable, QuantizerName,
 };
 
-pub(super) fn value(key: &str, given: impl ToString, expected: &str) -> ReadError {
+pub(crate) fn value(key: &str, given: impl ToString, expected: &str) -> ReadError {
     ReadError {
         place: Place::file(EXPERIMENT_FILE),
         problem: Problem::Value {

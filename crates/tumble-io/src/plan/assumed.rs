@@ -11,10 +11,10 @@ use tumble_core::{
     Output, Quantizer, STANDARD_GRAVITY_M_S2, Sensor, SensorType,
 };
 
-use super::request::value;
 use super::{PlanRequest, PlanSettings};
 use crate::catalogue::Catalogue;
 use crate::error::ReadError;
+use crate::folder::value;
 
 /// Gravity where nobody stated it: a plan hardly depends on it, its uncertainty is what counts.
 pub(super) const ASSUMED_GRAVITY_M_S2: f64 = 9.81;

@@ -11,7 +11,7 @@ use super::assumed::{ASSUMED_GRAVITY_M_S2, resolve};
 use crate::catalogue::{Catalogue, UserCatalogue};
 use crate::error::{Place, Problem, ReadError};
 use crate::experiment_file::{self, BenchTable, SensorTable, SpecTable};
-use crate::folder::{ConverterKeys, EXPERIMENT_FILE, bench_of_table, systematics_of_tables};
+use crate::folder::{ConverterKeys, EXPERIMENT_FILE, bench_of_table, systematics_of_tables, value};
 use crate::source::{DOCUMENT_LIMIT, read_document};
 use crate::toml_text;
 
@@ -170,15 +170,4 @@ fn settings_of(file: BenchFile) -> Result<(PlanSettings, Option<Gravity>), ReadE
         file.spec.target_scale_error,
     ]);
     Ok((s, gravity))
-}
-
-pub(super) fn value(key: &str, given: impl ToString, expected: &str) -> ReadError {
-    ReadError {
-        place: Place::file(EXPERIMENT_FILE),
-        problem: Problem::Value {
-            key: key.to_owned(),
-            given: given.to_string(),
-            expected: expected.to_owned(),
-        },
-    }
 }

@@ -5,6 +5,7 @@ mod conformity;
 mod evidence;
 mod findings;
 mod front;
+mod head;
 mod note;
 mod outliers;
 mod parts;
@@ -14,7 +15,8 @@ mod scatter;
 mod style;
 mod terms;
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+pub(crate) use head::head;
+use maud::{DOCTYPE, Markup, html};
 use tumble_io::passport::Passport;
 
 use crate::standing::Standing;
@@ -46,18 +48,12 @@ pub fn html(passport: &Passport) -> String {
         shortened(&sensor.serial, 40),
         shortened(&sensor.axis, 10)
     );
+    let title = format!("{} – {subject}", page.standing.heading());
     html! {
         (DOCTYPE)
         html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                title { (page.standing.heading()) " – " (subject) }
-                // Numbers of the page go into margin boxes; the text is escaped for CSS.
-                style { (PreEscaped(style::style(page.standing, &subject, &shortened(&passport.id, 60)))) }
-            }
+            // Numbers of the page go into margin boxes; the text is escaped for CSS.
+            (head(&title, "light dark", &style::style(page.standing, &subject, &shortened(&passport.id, 60))))
             body {
                 (front::front(&page))
                 main {

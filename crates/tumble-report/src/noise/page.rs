@@ -4,6 +4,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use tumble_io::noise::{CurveEntry, NoiseDocument};
 
 use super::{deviation_name, duration, printed_unit, short_name, stated, with_interval};
+use crate::html::{head, report_style};
 use crate::numbers::{p_value, significant, typographic};
 use crate::sanitize::clean_text;
 
@@ -18,14 +19,7 @@ pub fn noise_page(d: &NoiseDocument) -> String {
     html! {
         (DOCTYPE)
         html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                title { "Noise of " (name) }
-                style { (PreEscaped(crate::html::report_style(&name))) }
-            }
+            (head(&format!("Noise of {name}"), "light dark", &report_style(&name)))
             body {
                 h1 { "Noise of " (name) }
                 p .lead { (lead(d)) }

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use tumble_io::noise::{CurveEntry, NoiseDocument};
 
 use super::{deviation_name, duration, short_name, stated, with_interval};
+use crate::characters::Span;
 use crate::numbers::{p_value, significant};
 use crate::sanitize::clean_text as plain;
 use crate::words::wrapped;
@@ -158,16 +159,7 @@ fn figure(out: &mut String, d: &NoiseDocument, curve: &CurveEntry) {
         .filter(|p| p.deviation > 0.0)
         .map(|p| (p.tau_s.log10(), p.deviation.log10()))
         .collect();
-    let range = |of: &dyn Fn(&(f64, f64)) -> f64| {
-        points
-            .iter()
-            .map(of)
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)))
-    };
-    let ((left, right), (low, high)) = (range(&|p| p.0), range(&|p| p.1));
-    if points.len() < 3 || right <= left || high <= low {
-        return;
-    }
+    let Some(Span { x: (left, right), y: (low, high) }) = Span::of(&points) else { return };
     let mut grid = vec![vec![' '; COLUMNS]; ROWS];
     let place = |v: f64, from: f64, to: f64, cells: usize| {
         let part = ((v - from) / (to - from) * (cells - 1) as f64).round();

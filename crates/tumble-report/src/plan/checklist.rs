@@ -1,9 +1,10 @@
 //! The checklist of the operator: one page a run, A4, a row a dwell, legible at arm's length.
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{DOCTYPE, Markup, html};
 use tumble_io::{PlanDocument, PlannedPosition};
 
 use super::{clock, degrees, duration};
+use crate::html::head;
 use crate::numbers::typographic;
 use crate::sanitize::clean_text;
 
@@ -44,16 +45,13 @@ th.a{font-size:9pt;font-weight:600}
 #[must_use]
 pub fn plan_checklist(d: &PlanDocument) -> String {
     let sensor = clean_text(&d.sensor);
+    let title =
+        if sensor.is_empty() { "Checklist".to_owned() } else { format!("Checklist – {sensor}") };
     html! {
         (DOCTYPE)
         html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "Checklist" @if !sensor.is_empty() { " – " (sensor) } }
-                style { (PreEscaped(SHEET)) }
-            }
+            // For paper: black on white.
+            (head(&title, "light", SHEET))
             body {
                 (front(d, &sensor))
                 @for run in 1..=d.runs { (sheet(d, &sensor, run)) }
