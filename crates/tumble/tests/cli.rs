@@ -583,7 +583,9 @@ fn a_target_out_of_reach_is_a_no_with_what_would_do() {
         "{}",
         out(&usual)
     );
-    for wrong in [["--target", "bias=1mrad"], ["--hours", "0.05"], ["--range", "120"]] {
+    for wrong in
+        [["--target", "bias=1mrad"], ["--hours", "0.05"], ["--range", "120"], ["--rate", "0"]]
+    {
         let refused = tumble(dir.path(), &[&["plan"], &wrong[..]].concat());
         assert_eq!(code(&refused), 2, "{wrong:?}: {}", out(&refused));
     }

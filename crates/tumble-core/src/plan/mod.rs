@@ -75,7 +75,11 @@ impl std::fmt::Display for PlanError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Value { name, value, expected } => {
-                write!(f, "{name} = {value} does not fit; give {expected}")
+                // Endless rows of zeros help nobody.
+                let common =
+                    *value == 0.0 || !value.is_finite() || (1e-6..1e9).contains(&value.abs());
+                let shown = if common { value.to_string() } else { format!("{value:e}") };
+                write!(f, "{name} = {shown} does not fit; give {expected}")
             }
             Self::TooShort { total_s, needed_s } => write!(
                 f,

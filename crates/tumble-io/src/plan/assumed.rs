@@ -49,6 +49,9 @@ pub(super) fn resolve(
     path: Option<&Path>,
 ) -> Result<PlanRequest, ReadError> {
     let mut assumed = Assumed::default();
+    if let Some(rate_hz) = s.rate_hz.filter(|r| !(r.is_finite() && *r > 0.0)) {
+        return Err(value("rate_hz", rate_hz, "samples per second, more than zero"));
+    }
     let entry = match &s.sensor {
         None => None,
         Some(name) => match catalogue.find(name) {
