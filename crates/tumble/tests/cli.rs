@@ -1,50 +1,12 @@
 //! The binary as a user meets it: exit codes, streams, folders.
 #![allow(clippy::unwrap_used)] // A test that cannot unwrap has failed.
 
-use std::io::Write as _;
+mod common;
+
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Output};
 
-fn tumble(folder: &Path, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_tumble")).args(args).current_dir(folder).output().unwrap()
-}
-
-fn with_input(folder: &Path, args: &[&str], input: &str) -> Output {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_tumble"))
-        .args(args)
-        .current_dir(folder)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    // A refusal need not wait for its input.
-    if let Err(e) = child.stdin.take().unwrap().write_all(input.as_bytes()) {
-        assert_eq!(e.kind(), std::io::ErrorKind::BrokenPipe, "{e}");
-    }
-    child.wait_with_output().unwrap()
-}
-
-fn out(o: &Output) -> String {
-    String::from_utf8(o.stdout.clone()).unwrap()
-}
-
-fn err(o: &Output) -> String {
-    String::from_utf8(o.stderr.clone()).unwrap()
-}
-
-fn code(o: &Output) -> i32 {
-    o.status.code().unwrap()
-}
-
-/// A folder with a short simulated experiment `demo`.
-fn demo(extra: &[&str]) -> tempfile::TempDir {
-    let dir = tempfile::tempdir().unwrap();
-    let args = [&["simulate", "demo", "--dwell", "1"], extra].concat();
-    let made = tumble(dir.path(), &args);
-    assert_eq!(code(&made), 0, "{}", err(&made));
-    dir
-}
+use common::{code, demo, err, out, tumble, with_input};
 
 #[test]
 fn the_same_seed_gives_the_same_bytes() {
@@ -471,122 +433,5 @@ fn limits_judge_the_unit_and_change_no_exit_code() {
         for text in ["experiment.toml", key, remedy, &line] {
             assert!(err(&o).contains(text), "{lines}: no {text} in {}", err(&o));
         }
-    }
-}
-
-#[test]
-fn positions_are_left_out_on_request_and_recorded() {
-    let dir = demo(&["--seed", "3"]);
-    let of = |args: &[&str]| tumble(dir.path(), &[&["certify", "demo"], args].concat());
-    let json = |o: &Output| -> serde_json::Value { serde_json::from_slice(&o.stdout).unwrap() };
-    let asked = of(&["--json", "--leave-out", "run-2:12,7", "--leave-out", "run-1:3"]);
-    let p = json(&asked);
-    assert_eq!(code(&asked), 0, "{}", err(&asked));
-    assert_eq!(
-        p["options"]["left_out"],
-        serde_json::json!([
-            {"run": "run-1", "positions": [3]},
-            {"run": "run-2", "positions": [7, 12]}
-        ])
-    );
-    assert_eq!(p["runs"][1]["positions"], 58);
-    let findings = p["findings"].as_array().unwrap();
-    assert_eq!(findings.iter().filter(|f| f["id"] == "T0132").count(), 2);
-    let outliers = p["outliers"].as_array().unwrap();
-    assert_eq!(outliers.iter().filter(|o| o["left_out"] == true).count(), 3, "{outliers:?}");
-    assert_eq!(p["left_out_comparison"].as_array().unwrap().len(), 3);
-    // The folder may say it, too: the same numbers.
-    let file = dir.path().join("demo/experiment.toml");
-    let text = std::fs::read_to_string(&file).unwrap();
-    let with = |run: &str, list: &str, text: &str| {
-        let key = format!("file = \"{run}.csv\"\n");
-        assert!(text.contains(&key), "{text}");
-        text.replace(&key, &format!("{key}leave_out = {list}\n"))
-    };
-    let by_folder = with("run-1", "[3]", &with("run-2", "[7, 12]", &text));
-    std::fs::write(&file, by_folder).unwrap();
-    let q = json(&of(&["--json"]));
-    assert_eq!((&q["result"], &q["options"]), (&p["result"], &p["options"]));
-    // What is not there is refused with what is.
-    std::fs::write(&file, with("run-2", "[61]", &text)).unwrap();
-    let refused = of(&[]);
-    assert_eq!(code(&refused), 2);
-    assert!(
-        err(&refused).contains("leave_out") && err(&refused).contains("1 to 60"),
-        "{}",
-        err(&refused)
-    );
-    std::fs::write(&file, &text).unwrap();
-    for (wrong, says) in [
-        ("run-9:1", "run-1, run-2"),
-        ("run-1:61", "1 to 60"),
-        ("run-1:0", "1 to 60"),
-        ("run-1", "RUN:POSITION"),
-        ("run-1:a", "RUN:POSITION"),
-    ] {
-        let refused = of(&["--leave-out", wrong]);
-        assert_eq!(code(&refused), 2, "{wrong}");
-        assert!(err(&refused).contains(says), "{wrong}: {}", err(&refused));
-    }
-    // A report that says what was done.
-    let text = out(&of(&["--leave-out", "run-2:7"]));
-    assert!(
-        text.contains("T0132 positions were left out on request") && text.contains("run-2:7"),
-        "{text}"
-    );
-    let chosen = of(&["--leave-out", "run-2:1,2,3,4,5,6,7"]);
-    assert_eq!(code(&chosen), 4);
-    assert!(out(&chosen).contains("T0133"), "{}", out(&chosen));
-}
-
-#[test]
-fn a_plan_needs_three_words_and_is_simulated_and_certified() {
-    let dir = tempfile::tempdir().unwrap();
-    let args = ["plan", "--sensor", "ADXL203", "--range", "65", "--hours", "1", "--out", "plan"];
-    let made = tumble(dir.path(), &args);
-    assert_eq!(code(&made), 0, "{}", err(&made));
-    let text = out(&made);
-    assert!(text.starts_with("PLAN - ") && text.contains("paper's plan"), "{text}");
-    assert!(text.lines().all(|l| l.chars().count() <= 80), "{text}");
-    let page = std::fs::read_to_string(dir.path().join("plan/plan.html")).unwrap();
-    assert!(page.contains("Run 1 of") && !page.contains("<script"));
-    let simulated = ["simulate", "demo", "--plan", "plan/plan.toml", "--averaged"];
-    assert_eq!(code(&tumble(dir.path(), &simulated)), 0);
-    let certified = tumble(dir.path(), &["certify", "demo"]);
-    assert_eq!(code(&certified), 0, "{}", out(&certified));
-    // The same question, the same plan.
-    assert!(err(&tumble(dir.path(), &args)).contains("already"));
-}
-
-#[test]
-fn a_target_out_of_reach_is_a_no_with_what_would_do() {
-    let dir = tempfile::tempdir().unwrap();
-    let base = ["plan", "--range", "65", "--k2", "0ug/g2", "--k3", "0", "--lean", "5arcmin"];
-    let hard = [&base[..], &["--target", "bias=1mm/s2"]].concat();
-    let no = tumble(dir.path(), &hard);
-    assert_eq!(code(&no), 1, "{}", out(&no));
-    assert!(
-        out(&no).starts_with("TARGETS NOT MET") && out(&no).contains("up and down"),
-        "{}",
-        out(&no)
-    );
-    let with = [&hard[..], &["--updown", "--json"]].concat();
-    let yes = tumble(dir.path(), &with);
-    assert_eq!(code(&yes), 0, "{}", out(&yes));
-    let json: serde_json::Value = serde_json::from_str(&out(&yes)).unwrap();
-    assert_eq!((json["met"].as_bool(), json["updown"].as_bool()), (Some(true), Some(true)));
-    // Where no single change does, several together.
-    let usual = tumble(dir.path(), &["plan", "--range", "65", "--target", "bias=1mm/s2"]);
-    assert_eq!(code(&usual), 1);
-    assert!(
-        out(&usual).contains("together: ") && out(&usual).contains("K3 known twice as well"),
-        "{}",
-        out(&usual)
-    );
-    for wrong in
-        [["--target", "bias=1mrad"], ["--hours", "0.05"], ["--range", "120"], ["--rate", "0"]]
-    {
-        let refused = tumble(dir.path(), &[&["plan"], &wrong[..]].concat());
-        assert_eq!(code(&refused), 2, "{wrong:?}: {}", out(&refused));
     }
 }

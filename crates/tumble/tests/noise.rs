@@ -1,20 +1,17 @@
 //! `tumble noise` as a user meets it: published figures, files as people have them, hostile ones.
+//!
+//! Past 500 lines: one list of what a record can be.
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // A test that cannot unwrap has failed; figures are for people.
+
+mod common;
 
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Command;
 
+use common::{err, tumble};
 use tumble_io::noise::{CurveEntry, NoiseDocument};
-
-fn tumble(folder: &Path, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_tumble")).args(args).current_dir(folder).output().unwrap()
-}
-
-fn err(o: &Output) -> String {
-    String::from_utf8_lossy(&o.stderr).into_owned()
-}
 
 /// Writes a file, analyses it, gives the document.
 fn analysed(text: &[u8], extra: &[&str]) -> NoiseDocument {

@@ -168,6 +168,35 @@ pub struct PlanNoise {
     pub ramp_m_s3: f64,
 }
 
+impl PlanNoise {
+    /// N of the sensor alone, where readings were rounded when it was measured.
+    ///
+    /// **Model** rounding adds white noise of its own: `N² − N_r²`, not below zero. A plan reckons with the converter by itself.
+    ///
+    /// ```
+    /// use tumble_core::plan::PlanNoise;
+    /// assert!((PlanNoise::white_without_rounding(5e-4, 3e-4) - 4e-4).abs() < 1e-15);
+    /// ```
+    #[must_use]
+    pub fn white_without_rounding(white_m_s2_rts: f64, rounding_m_s2_rts: f64) -> f64 {
+        (white_m_s2_rts.powi(2) - rounding_m_s2_rts.powi(2)).max(0.0).sqrt()
+    }
+
+    /// N of readings that scatter by a standard deviation, `rate_hz` a second: `s/√rate`.
+    #[must_use]
+    pub fn white_of_sample(sample_m_s2: f64, rate_hz: f64) -> f64 {
+        sample_m_s2 / rate_hz.sqrt()
+    }
+
+    /// N of a one-sided density `n` in m/s²/√Hz, as data sheets give it: `n/√2`.
+    ///
+    /// **Source** metrology notes, section 5.
+    #[must_use]
+    pub fn white_of_density(density_m_s2_rthz: f64) -> f64 {
+        density_m_s2_rthz / 2f64.sqrt()
+    }
+}
+
 /// The converter, as far as a plan depends on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanConverter {

@@ -54,12 +54,7 @@ pub(super) fn resolve(
     }
     let entry = match &s.sensor {
         None => None,
-        Some(name) => match catalogue.find(name) {
-            Some(entry) => Some(&entry.sensor_type),
-            // A file's model is free text; a flag means the catalogue.
-            None if path.is_some() => None,
-            None => return Err(unknown(catalogue, name)),
-        },
+        Some(name) => sensor_type(catalogue, name, path)?,
     };
     let [low, high] = assumed.or(s.range_deg, [-ASSUMED_RANGE_DEG, ASSUMED_RANGE_DEG], || {
         format!("a table of -{ASSUMED_RANGE_DEG} to {ASSUMED_RANGE_DEG} deg (--range)")
@@ -112,6 +107,19 @@ pub(super) fn resolve(
     Ok(PlanRequest { problem, sensor, assumed: assumed.0 })
 }
 
+/// A file's model is free text; a flag means the catalogue.
+fn sensor_type<'a>(
+    catalogue: &'a Catalogue,
+    name: &str,
+    path: Option<&Path>,
+) -> Result<Option<&'a SensorType>, ReadError> {
+    match catalogue.find(name) {
+        Some(entry) => Ok(Some(&entry.sensor_type)),
+        None if path.is_some() => Ok(None),
+        None => Err(unknown(catalogue, name)),
+    }
+}
+
 fn possible(stated: Option<bool>) -> Possible {
     if stated == Some(true) { Possible::Yes } else { Possible::No }
 }
@@ -157,13 +165,12 @@ fn noise(
     let known = s.known_noise;
     let white = s
         .white_m_s2_rts
-        // One-sided density over √2 (metrology notes, section 5).
-        .or(s.noise_ug_rthz.map(|density| density * ug / 2f64.sqrt()))
+        .or(s.noise_ug_rthz.map(|density| PlanNoise::white_of_density(density * ug)))
         .or(known.map(|k| without_rounding(k, converter)))
         .unwrap_or_else(|| {
             let (density, sentence) = density(entry);
             assumed.0.push(sentence);
-            density * ug / 2f64.sqrt()
+            PlanNoise::white_of_density(density * ug)
         });
     let slow = [s.bias_instability_ug, s.random_walk_m_s2_rts, s.drift_m_s2_h];
     if known.is_none() && slow.iter().all(Option::is_none) {
@@ -186,7 +193,7 @@ fn noise(
 /// the plan reckons with that by itself.
 fn without_rounding(known: crate::noise::KnownNoise, converter: Option<PlanConverter>) -> f64 {
     let rounding = known.rounding_m_s2_rts.filter(|_| converter.is_some()).unwrap_or(0.0);
-    (known.white_m_s2_rts.powi(2) - rounding * rounding).max(0.0).sqrt()
+    PlanNoise::white_without_rounding(known.white_m_s2_rts, rounding)
 }
 
 /// Density of the catalogue's first mode (of several axes the largest) or a usual one, µg/√Hz, with a sentence.

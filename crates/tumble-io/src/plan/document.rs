@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 use tumble_core::plan::{
-    Gain, Lever, Plan, Possible, Prediction, Term, TermPrediction, WORTH_SAYING,
+    Gain, Lever, OrderEffect, Plan, Possible, Prediction, RunsChoice, Term, TermPrediction,
+    WORTH_SAYING,
 };
 
 use super::PlanRequest;
@@ -199,15 +200,7 @@ impl PlanDocument {
         let p = &request.problem;
         let limiting = plan.prediction.limiting().map_or(Term::Bias, |t| t.term);
         let now = plan.prediction.worst_ratio();
-        let gain = |g: &Gain| {
-            Some(PlannedGain {
-                lever: g.lever.name().into(),
-                words: g.lever.words().into(),
-                expanded: g.prediction.of(limiting)?.expanded(),
-                worst_ratio: g.prediction.worst_ratio(),
-                met: g.prediction.worst_ratio() <= 1.0,
-            })
-        };
+        let gain = |g: &Gain| PlannedGain::of(g, limiting);
         // The next minute has a line of its own, however little it buys.
         let gains = plan
             .gains
@@ -239,30 +232,13 @@ impl PlanDocument {
             criterion: p.criterion.name().into(),
             gap: plan.gap,
             spare_price: plan.spare_price,
-            order: plan
-                .order
-                .iter()
-                .map(|o| PlannedOrder {
-                    term: o.term.name().into(),
-                    line_sorted: o.linear_sorted,
-                    line: o.linear,
-                    bow_sorted: o.bow_sorted,
-                    bow: o.bow,
-                })
-                .collect(),
+            order: plan.order.iter().map(PlannedOrder::of).collect(),
             paper: plan.paper.as_ref().map(|q| PlannedPaper {
                 positions: q.positions,
                 dwell_s: q.dwell_s,
                 predicted: predicted(&q.prediction),
             }),
-            by_runs: plan
-                .by_runs
-                .iter()
-                .map(|r| PlannedRuns {
-                    runs: r.runs,
-                    worst_ratio: r.prediction.as_ref().map(Prediction::worst_ratio),
-                })
-                .collect(),
+            by_runs: plan.by_runs.iter().map(PlannedRuns::of).collect(),
             gains,
             next_minute,
             together: plan.together.as_deref().map(levers),
@@ -277,6 +253,38 @@ impl PlanDocument {
     pub fn to_json(&self) -> String {
         // Plain data of finite numbers always serializes.
         serde_json::to_string_pretty(self).map(|t| t + "\n").unwrap_or_default()
+    }
+}
+
+impl PlannedOrder {
+    fn of(o: &OrderEffect) -> Self {
+        Self {
+            term: o.term.name().into(),
+            line_sorted: o.linear_sorted,
+            line: o.linear,
+            bow_sorted: o.bow_sorted,
+            bow: o.bow,
+        }
+    }
+}
+
+impl PlannedRuns {
+    fn of(r: &RunsChoice) -> Self {
+        let worst_ratio = r.prediction.as_ref().map(Prediction::worst_ratio);
+        Self { runs: r.runs, worst_ratio }
+    }
+}
+
+impl PlannedGain {
+    /// `None` where it does not fit the limiting term.
+    fn of(g: &Gain, limiting: Term) -> Option<Self> {
+        Some(Self {
+            lever: g.lever.name().into(),
+            words: g.lever.words().into(),
+            expanded: g.prediction.of(limiting)?.expanded(),
+            worst_ratio: g.prediction.worst_ratio(),
+            met: g.prediction.worst_ratio() <= 1.0,
+        })
     }
 }
 

@@ -1,7 +1,6 @@
 //! `tumble plan`
 
-use tumble_core::plan::TERMS;
-use tumble_core::plan::plan;
+use tumble_core::plan::{PlanNoise, TERMS, plan};
 use tumble_core::systematic::Systematics;
 use tumble_io::noise::read_document as read_noise_document;
 use tumble_io::{
@@ -99,8 +98,7 @@ fn settings(a: &PlanArgs) -> Result<PlanSettings, String> {
         Some(crate::quantity::NoiseArg::Sample(AccelerationArg::Lsb(_))) if lsb.is_none() => {
             return Err("--noise in LSB needs --lsb, for instance --lsb 7.69mm/s2".into());
         }
-        // A sample's standard deviation over the root of the rate is the coefficient N.
-        Some(n) => Some(n.m_s2(lsb.unwrap_or(1.0), rate_hz) / rate_hz.sqrt()),
+        Some(n) => Some(PlanNoise::white_of_sample(n.m_s2(lsb.unwrap_or(1.0), rate_hz), rate_hz)),
     };
     let ug = 1e-6 * tumble_core::STANDARD_GRAVITY_M_S2;
     let mut targets = [None; TERMS];
@@ -133,17 +131,7 @@ fn settings(a: &PlanArgs) -> Result<PlanSettings, String> {
         random_walk_m_s2_rts: a.random_walk,
         drift_m_s2_h: m_s2(a.drift, "--drift")?,
         turn_on_m_s2: m_s2(a.turn_on, "--turn-on")?,
-        systematics: Systematics {
-            dial_scale: a.dial_scale,
-            eccentricity: a.eccentricity,
-            dial_zero: a.dial_zero,
-            axis_tilt: a.tilt,
-            sensor_lean: a.tilt,
-            temperature_spread_k: a.temperature_rise,
-            k2_per_m_s2: a.k2,
-            k3_per_m2_s4: a.k3,
-            ..Systematics::default()
-        },
+        systematics: systematics(a),
         sensor: a.sensor.clone(),
         range_deg: a.range.clone().map(|r| r.0),
         scatter_arcmin: a.scatter.map(|s| s.arcmin()),
@@ -155,6 +143,20 @@ fn settings(a: &PlanArgs) -> Result<PlanSettings, String> {
         level: a.level,
         ..PlanSettings::default()
     })
+}
+
+fn systematics(a: &PlanArgs) -> Systematics {
+    Systematics {
+        dial_scale: a.dial_scale,
+        eccentricity: a.eccentricity,
+        dial_zero: a.dial_zero,
+        axis_tilt: a.tilt,
+        sensor_lean: a.tilt,
+        temperature_spread_k: a.temperature_rise,
+        k2_per_m_s2: a.k2,
+        k3_per_m2_s4: a.k3,
+        ..Systematics::default()
+    }
 }
 
 /// Samples per second where nobody states them.
