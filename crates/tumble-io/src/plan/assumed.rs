@@ -74,10 +74,7 @@ pub(super) fn resolve(
     if s.turn_on_m_s2.is_none() {
         assumed.0.push("a bias that power-ups do not change (--turn-on)".into());
     }
-    let lean = s.updown_lean_arcmin.unwrap_or(DEFAULT_VERTICAL_LEAN_ARCMIN);
-    if s.updown == Some(true) && s.updown_lean_arcmin.is_none() {
-        assumed.0.push(format!("upright dwells that lean by {lean} arcmin, standard (--lean)"));
-    }
+    let lean = lean_arcmin(&s, &mut assumed);
     let further_terms = terms(s.terms.as_deref().unwrap_or_default())?;
     let systematics = systematics(&s, entry, gravity, range, &further_terms, &mut assumed);
     let problem = PlanProblem {
@@ -118,6 +115,15 @@ fn sensor_type<'a>(
         None if path.is_some() => Ok(None),
         None => Err(unknown(catalogue, name)),
     }
+}
+
+/// Lean of upright dwells; a sentence only where there are any.
+fn lean_arcmin(s: &PlanSettings, assumed: &mut Assumed) -> f64 {
+    let lean = s.updown_lean_arcmin.unwrap_or(DEFAULT_VERTICAL_LEAN_ARCMIN);
+    if s.updown == Some(true) && s.updown_lean_arcmin.is_none() {
+        assumed.0.push(format!("upright dwells that lean by {lean} arcmin, standard (--lean)"));
+    }
+    lean
 }
 
 fn possible(stated: Option<bool>) -> Possible {

@@ -101,16 +101,6 @@ fn settings(a: &PlanArgs) -> Result<PlanSettings, String> {
         Some(n) => Some(PlanNoise::white_of_sample(n.m_s2(lsb.unwrap_or(1.0), rate_hz), rate_hz)),
     };
     let ug = 1e-6 * tumble_core::STANDARD_GRAVITY_M_S2;
-    let mut targets = [None; TERMS];
-    for t in &a.target {
-        let (term, size) = match *t {
-            Target::Acceleration(term, given) => {
-                (term, m_s2(Some(given), "--target")?.unwrap_or_default())
-            }
-            Target::Plain(term, size) => (term, size),
-        };
-        targets[term.index()] = Some(size);
-    }
     Ok(PlanSettings {
         hours: a.hours,
         runs: a.runs,
@@ -139,10 +129,26 @@ fn settings(a: &PlanArgs) -> Result<PlanSettings, String> {
         updown_lean_arcmin: a.lean.map(|l| l.arcmin()),
         lsb_m_s2: lsb,
         rate_hz: a.rate,
-        targets,
+        targets: targets(&a.target, |given| m_s2(Some(given), "--target"))?,
         level: a.level,
         ..PlanSettings::default()
     })
+}
+
+/// Targets by term; `m_s2` knows how much an LSB is.
+fn targets(
+    given: &[Target],
+    m_s2: impl Fn(AccelerationArg) -> Result<Option<f64>, String>,
+) -> Result<[Option<f64>; TERMS], String> {
+    let mut targets = [None; TERMS];
+    for t in given {
+        let (term, size) = match *t {
+            Target::Acceleration(term, size) => (term, m_s2(size)?.unwrap_or_default()),
+            Target::Plain(term, size) => (term, size),
+        };
+        targets[term.index()] = Some(size);
+    }
+    Ok(targets)
 }
 
 fn systematics(a: &PlanArgs) -> Systematics {
