@@ -26,9 +26,10 @@ thead{display:table-header-group}
 tr{break-inside:avoid}
 th.w{text-align:left}
 th{font-size:9pt;text-align:left;font-weight:600;border-bottom:.4mm solid #000;padding:1mm 2mm}
-td{border-bottom:.2mm solid #999;padding:.8mm 2mm;vertical-align:middle;height:8.4mm}
+td{border-bottom:.2mm solid #999;padding:.5mm 2mm;vertical-align:middle;height:7.6mm}
 .n,.t{text-align:right;white-space:nowrap;font-variant-numeric:tabular-nums;color:#333;width:14mm}
 .a{text-align:right;font-size:17pt;font-weight:700;font-variant-numeric:tabular-nums;width:34mm;white-space:nowrap;line-height:1}
+th.again{font-weight:400;color:#333;border:0;padding:0 2mm}
 th.a{font-size:9pt;font-weight:600}
 .box{width:10mm}.box i{display:block;width:5.5mm;height:5.5mm;border:.5mm solid #000}
 .do{font-size:9.5pt}
@@ -104,7 +105,8 @@ fn sheet(d: &PlanDocument, sensor: &str, run: u32) -> Markup {
                 span { "Temperature at start" } span { "Temperature at end" } span { "File" }
             }
             table {
-                thead { tr {
+                // Repeated at the top of a second sheet, which would else belong to no run.
+                thead { tr { th .again colspan="6" { "Run " (run) " of " (d.runs) @if !sensor.is_empty() { " · " (sensor) } } } tr {
                     th .box {} th .n { "No." } th .a { "Angle" } th .t { "Read at" } th { "Before" } th .w { "Note" }
                 } }
                 tbody {
